@@ -1,0 +1,114 @@
+//! Energy maps as OpenEXR.
+
+use std::{
+    collections::HashSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use crate::{Error, Picture, check_writable, open_exr::write_layers};
+
+/// The irradiance that an object's energy map holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Irradiance<'m> {
+    /// Texels along x.
+    pub width: u32,
+    /// Texels along y.
+    pub height: u32,
+    /// Irradiance, W/m², linear Rec. 709, row by row from row 0: what fell on the front, then, if the map has a second layer,
+    /// what fell on the back.
+    pub texels: &'m [[f32; 3]],
+}
+
+/// A folder of energy maps: one file an object, `NAME.exr`.
+///
+/// The channels R, G, B hold the irradiance of the front, W/m², 32-bit float, and `back.R`, `back.G`, `back.B` that of the
+/// back, for maps that have one. Line j of the file is row j of the map. Characters of an object's name that some file systems
+/// refuse are written as `_`; a name that is taken then gets a number.
+#[derive(Debug)]
+pub struct EnergyMapFolder {
+    path: PathBuf,
+    taken: HashSet<String>,
+}
+
+impl EnergyMapFolder {
+    /// Opens a folder, creates it where it is missing, and checks that it takes files. Files in it stay until they are
+    /// replaced.
+    ///
+    /// # Errors
+    /// If the folder cannot be created or written to.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        fs::create_dir_all(path).map_err(|source| Error::Create { path: path.to_owned(), source })?;
+        check_writable(&path.join("map.exr"))?;
+        Ok(Self { path: path.to_owned(), taken: HashSet::new() })
+    }
+
+    /// Writes one object's map; returns its file.
+    ///
+    /// # Errors
+    /// If the texels are not as many as one or two layers of the map have, or the file cannot be written.
+    pub fn write(&mut self, object: &str, map: &Irradiance<'_>) -> Result<PathBuf, Error> {
+        let path = self.path.join(self.file_name(object));
+        let layer = |pixels| Picture { width: map.width, height: map.height, pixels };
+        let texels_in_layer = map.width as usize * map.height as usize;
+        let (front, back) = map.texels.split_at(texels_in_layer.min(map.texels.len()));
+        let mut layers = vec![("", layer(front))];
+        if !back.is_empty() {
+            layers.push(("back.", layer(back)));
+        }
+        write_layers(&path, "irradiance, W/m^2", &layers)?;
+        Ok(path)
+    }
+
+    /// A name that differs from all given before also where case does not count.
+    fn file_name(&mut self, object: &str) -> String {
+        let allowed = |c: char| if c.is_control() || r#"/\:*?"<>|"#.contains(c) { '_' } else { c };
+        let stem: String = object.chars().map(allowed).collect();
+        let mut candidate = stem.clone();
+        let mut number = 2;
+        while !self.taken.insert(candidate.to_lowercase()) {
+            candidate = format!("{stem} {number}");
+            number += 1;
+        }
+        candidate + ".exr"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use exr::prelude::read_all_flat_layers_from_file;
+
+    use super::*;
+
+    #[test]
+    fn both_sides_go_into_one_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut maps = EnergyMapFolder::open(&folder.path().join("new/maps")).unwrap();
+        let texels: Vec<[f32; 3]> = (0..12u8).map(|i| [f32::from(i), 0.0, 0.5]).collect();
+        let both = maps.write("floor", &Irradiance { width: 3, height: 2, texels: &texels }).unwrap();
+        let front = maps.write("Floor", &Irradiance { width: 3, height: 4, texels: &texels }).unwrap();
+        assert!(both.ends_with("new/maps/floor.exr") && front.ends_with("new/maps/Floor 2.exr"));
+        let file = read_all_flat_layers_from_file(&both).unwrap();
+        let channels = &file.layer_data[0].channel_data.list;
+        let names: Vec<_> = channels.iter().map(|channel| channel.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "back.B", "back.G", "back.R"]);
+        let values = |at: usize| channels[at].sample_data.values_as_f32().collect::<Vec<_>>();
+        assert_eq!((values(2), values(5)), ((0..6u8).map(f32::from).collect(), (6..12u8).map(f32::from).collect()));
+        assert!(maps.write("short", &Irradiance { width: 3, height: 2, texels: &texels[..5] }).is_err());
+        assert!(maps.write("long", &Irradiance { width: 3, height: 2, texels: &texels[..9] }).is_err());
+    }
+
+    #[test]
+    fn names_fit_every_file_system() {
+        let mut maps = EnergyMapFolder { path: PathBuf::new(), taken: HashSet::new() };
+        let names = ["a:b", "a?b", "A_B", "ä ö.1"].map(|name| maps.file_name(name));
+        assert_eq!(names, ["a_b.exr", "a_b 2.exr", "A_B 3.exr", "ä ö.1.exr"]);
+    }
+
+    #[test]
+    fn a_file_in_the_place_of_the_folder_is_named() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let message = EnergyMapFolder::open(file.path()).unwrap_err().to_string();
+        assert!(message.starts_with(&file.path().display().to_string()), "{message}");
+    }
+}

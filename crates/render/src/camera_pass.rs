@@ -1,0 +1,118 @@
+//! Phase 2: samples of the picture.
+
+use diacaustic_scene::Scene;
+use diacaustic_shaders::{CAMERA, CameraParams, TILE_SIZE};
+
+use crate::{
+    Error, Film,
+    energy_map::EnergyMaps,
+    film::filter_inverse_cdf,
+    gpu::{Binding, Gpu, Purpose},
+    random::combine,
+};
+
+/// The bindings of `shaders/layout/camera_pass.wgsl`.
+const PARAMS: [Binding; 1] = [Binding::Uniform];
+const OUTPUTS: [Binding; 2] = [Binding::Read, Binding::ReadWrite];
+const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
+/// The stream of the camera pass's seeds.
+const SEED_STREAM: u32 = 2;
+
+/// The pipeline of the camera pass.
+#[derive(Debug)]
+pub(crate) struct CameraPass {
+    params_layout: wgpu::BindGroupLayout,
+    outputs_layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl CameraPass {
+    pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
+        let params_layout = gpu.layout("camera params", wgpu::ShaderStages::COMPUTE, &PARAMS);
+        let outputs_layout = gpu.layout("camera outputs", wgpu::ShaderStages::COMPUTE, &OUTPUTS);
+        let pipeline = gpu.compute_pipeline(CAMERA, &[scene_layout, &params_layout, &outputs_layout]);
+        Self { params_layout, outputs_layout, pipeline }
+    }
+}
+
+/// One scene's picture on the device.
+#[derive(Debug)]
+pub(crate) struct Samples {
+    /// The params of every sample, but for its index.
+    template: CameraParams,
+    params: wgpu::Buffer,
+    /// Four words of counters, then the pixels.
+    pub film: wgpu::Buffer,
+    params_group: wgpu::BindGroup,
+    outputs_group: wgpu::BindGroup,
+}
+
+impl Samples {
+    pub fn new(gpu: &Gpu, pass: &CameraPass, scene: &Scene, maps: &EnergyMaps) -> Result<Self, Error> {
+        let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
+        let params = gpu.uniform::<CameraParams>("camera");
+        let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
+        Ok(Self {
+            template: template(scene),
+            params_group: gpu.bind(&pass.params_layout, &[&params]),
+            outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.irradiance, &film]),
+            params,
+            film,
+        })
+    }
+
+    /// Submits one sample of every pixel.
+    pub fn add(&self, gpu: &Gpu, pass: &CameraPass, scene_group: &wgpu::BindGroup, sample_index: u32) {
+        let params = CameraParams { sample_index, ..self.template };
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        let groups = [scene_group, &self.params_group, &self.outputs_group];
+        let tiles = [params.width.div_ceil(TILE_SIZE), params.height.div_ceil(TILE_SIZE)];
+        gpu.dispatch(&pass.pipeline, &groups, tiles);
+    }
+
+    /// Reads the picture. Blocks.
+    pub fn read(&self, gpu: &Gpu, samples: u32) -> Result<Film, Error> {
+        self.rays(gpu)?;
+        let (width, height) = (self.template.width, self.template.height);
+        let sums: Vec<[f32; 4]> = gpu.read(&self.film, 1..1 + u64::from(width) * u64::from(height))?;
+        let mean = |[r, g, b, count]: [f32; 4]| [r, g, b].map(|sum| sum / count.max(1.0));
+        Ok(Film { width, height, samples, radiance: sums.into_iter().map(mean).collect() })
+    }
+
+    /// Reads the number of rays traced. Blocks.
+    pub fn rays(&self, gpu: &Gpu) -> Result<u64, Error> {
+        let words: Vec<u32> = gpu.read(&self.film, 0..4)?;
+        if words[2] > 0 {
+            return Err(Error::CutShort { invocations: words[2] });
+        }
+        Ok(u64::from(words[1]) << 32 | u64::from(words[0]))
+    }
+}
+
+fn template(scene: &Scene) -> CameraParams {
+    let camera = &scene.camera;
+    let settings = &scene.settings;
+    let [right, up, forward] = camera.axes();
+    let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
+    let half_width = half_height * settings.width as f32 / settings.height as f32;
+    let lit = scene.lights.iter().any(|light| light.kind.flux().max_element() > 0.0);
+    CameraParams {
+        position: camera.position.into(),
+        aperture_radius: camera.aperture_radius,
+        half_right: (half_width * right).into(),
+        focus_distance: camera.focus_distance,
+        half_up: (half_height * up).into(),
+        sample_index: 0,
+        forward: forward.into(),
+        seed: combine(settings.seed, SEED_STREAM),
+        background: scene.background.into(),
+        max_depth: settings.max_depth,
+        ambient: scene.ambient.into(),
+        light_count: if lit { scene.lights.len() as u32 } else { 0 },
+        lens_right: right.into(),
+        width: settings.width,
+        lens_up: up.into(),
+        height: settings.height,
+        filter_inverse_cdf: filter_inverse_cdf(settings.filter),
+    }
+}

@@ -1,0 +1,219 @@
+//! Buffers, pipelines and read-back on the application's device.
+
+use bytemuck::Pod;
+use diacaustic_shaders::Kernel;
+use wgpu::util::DeviceExt as _;
+
+use crate::Error;
+
+/// The application's device and queue.
+#[derive(Clone, Debug)]
+pub(crate) struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// How a binding is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Binding {
+    Uniform,
+    Read,
+    ReadWrite,
+}
+
+/// What a buffer is for, and what to do if it does not fit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Purpose {
+    pub what: &'static str,
+    pub remedy: &'static str,
+}
+
+impl Gpu {
+    /// Refuses a storage buffer that the device cannot bind.
+    pub fn check_size(&self, purpose: Purpose, asked: u64) -> Result<(), Error> {
+        let limits = self.device.limits();
+        let available = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        if asked > available {
+            return Err(Error::BufferTooLarge { what: purpose.what, asked, available, remedy: purpose.remedy });
+        }
+        Ok(())
+    }
+
+    /// A storage buffer that holds `content`, or one zeroed element if that is empty.
+    pub fn filled<T: Pod>(&self, purpose: Purpose, content: &[T]) -> Result<wgpu::Buffer, Error> {
+        let filler = [T::zeroed()];
+        let content = if content.is_empty() { &filler } else { content };
+        self.check_size(purpose, size_of_val(content) as u64)?;
+        Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(purpose.what),
+            contents: bytemuck::cast_slice(content),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        }))
+    }
+
+    /// A zeroed storage buffer of at least 16 bytes.
+    pub fn zeroed(&self, purpose: Purpose, size: u64) -> Result<wgpu::Buffer, Error> {
+        self.check_size(purpose, size)?;
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(purpose.what),
+            size: size.max(16),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// A uniform buffer for one `T`.
+    pub fn uniform<T: Pod>(&self, label: &'static str) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: size_of::<T>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    }
+
+    /// A layout with one binding for each entry, in order.
+    pub fn layout(
+        &self,
+        label: &'static str,
+        stages: wgpu::ShaderStages,
+        bindings: &[Binding],
+    ) -> wgpu::BindGroupLayout {
+        let entries: Vec<_> = bindings
+            .iter()
+            .enumerate()
+            .map(|(number, binding)| wgpu::BindGroupLayoutEntry {
+                binding: number as u32,
+                visibility: stages,
+                ty: wgpu::BindingType::Buffer {
+                    ty: match binding {
+                        Binding::Uniform => wgpu::BufferBindingType::Uniform,
+                        Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                        Binding::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
+                    },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            })
+            .collect();
+        self.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries })
+    }
+
+    /// A bind group of whole buffers, in order.
+    pub fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+        let entries: Vec<_> = buffers
+            .iter()
+            .enumerate()
+            .map(|(number, buffer)| wgpu::BindGroupEntry { binding: number as u32, resource: buffer.as_entire_binding() })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// The pipeline of a compute kernel; `groups` are its bind groups' layouts, in order.
+    pub fn compute_pipeline(&self, kernel: Kernel, groups: &[&wgpu::BindGroupLayout]) -> wgpu::ComputePipeline {
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(kernel.name),
+            source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+        });
+        let layouts: Vec<_> = groups.iter().map(|layout| Some(*layout)).collect();
+        let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(kernel.name),
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
+        self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(kernel.name),
+            layout: Some(&layout),
+            module: &module,
+            entry_point: kernel.entry_point,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        })
+    }
+
+    /// Submits one dispatch.
+    pub fn dispatch(&self, pipeline: &wgpu::ComputePipeline, groups: &[&wgpu::BindGroup], size: [u32; 2]) {
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            for (number, group) in groups.iter().enumerate() {
+                pass.set_bind_group(number as u32, *group, &[]);
+            }
+            pass.dispatch_workgroups(size[0], size[1], 1);
+        }
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// Sets a buffer to zero.
+    pub fn clear(&self, buffer: &wgpu::Buffer) {
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.clear_buffer(buffer, 0, None);
+        self.queue.submit([encoder.finish()]);
+    }
+
+    /// Copies elements `range` of a buffer to the host. Blocks until the device has done all submitted work.
+    pub fn read<T: Pod>(&self, buffer: &wgpu::Buffer, range: std::ops::Range<u64>) -> Result<Vec<T>, Error> {
+        let element = size_of::<T>() as u64;
+        let size = (range.end - range.start) * element;
+        let staging = self.poisoned_staging(size)?;
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(buffer, range.start * element, &staging, 0, size);
+        self.queue.submit([encoder.finish()]);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        staging.slice(..).map_async(wgpu::MapMode::Read, move |result| {
+            // The receiver outlives the wait below, so that a failed send cannot lose a result.
+            let _ = sender.send(result);
+        });
+        self.wait()?;
+        receiver
+            .recv()
+            .map_err(|_| Error::Device("the device never answered a read-back".into()))?
+            .map_err(|error| Error::Device(error.to_string()))?;
+        let view = staging.slice(..).get_mapped_range().map_err(|error| Error::Device(error.to_string()))?;
+        Ok(bytemuck::pod_collect_to_vec(&view))
+    }
+
+    /// A buffer to copy results into, poisoned so that a copy which did not happen cannot look like zeros.
+    fn poisoned_staging(&self, size: u64) -> Result<wgpu::Buffer, Error> {
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read-back"),
+            size,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: true,
+        });
+        let poison = vec![0xa5; size as usize];
+        staging
+            .slice(..)
+            .get_mapped_range_mut()
+            .map_err(|error| Error::Device(error.to_string()))?
+            .copy_from_slice(&poison);
+        staging.unmap();
+        Ok(staging)
+    }
+
+    /// Blocks until the device has done all submitted work.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .map(|_| ())
+            .map_err(|error| Error::Device(error.to_string()))
+    }
+
+    /// Runs `work`, and reports what the device ran out of or refused in it.
+    pub fn guarded<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        let refused = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let exhausted = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let result = work();
+        let exhausted = pollster::block_on(exhausted.pop());
+        let refused = pollster::block_on(refused.pop());
+        if let Some(error) = exhausted {
+            return Err(Error::OutOfMemory(error.to_string()));
+        }
+        if let Some(error) = refused {
+            return Err(Error::Device(error.to_string()));
+        }
+        result
+    }
+}

@@ -1,0 +1,46 @@
+//! Renders glass meshes and their caustics with WGSL compute shaders, on the application's own `wgpu` device.
+//!
+//! Photons leave the lights and fill *energy maps* on the surfaces they reach through glass and mirrors; the camera pass reads
+//! them beside direct light. The same scene, seed and adapter give the same bits.
+//!
+//! ```no_run
+//! # fn example(device: wgpu::Device, queue: wgpu::Queue, scene: diacaustic::scene::Scene) -> Result<(), diacaustic::Error> {
+//! use diacaustic::{Renderer, RendererOptions};
+//!
+//! let mut renderer = Renderer::new(&device, &queue, &RendererOptions::default())?;
+//! renderer.set_scene(&scene)?;
+//! renderer.emit_photons(0..1_000_000)?;
+//! renderer.add_samples(16)?;
+//! let film = renderer.film()?; // blocks
+//! println!("the first pixel's radiance: {:?} W/(m² sr)", film.radiance[0]);
+//! # Ok(())
+//! # }
+//! ```
+
+pub use diacaustic_scene as scene;
+pub use diacaustic_surface::MapLayout;
+pub use diacaustic_shaders::AimDisc;
+pub use {glam, wgpu};
+
+mod camera_pass;
+mod display_pass;
+mod energy_map;
+mod error;
+mod film;
+mod gpu;
+mod guide;
+mod photon_pass;
+mod random;
+mod renderer;
+mod scene_buffers;
+mod self_test;
+mod statistics;
+
+pub use display_pass::RenderParams;
+pub use energy_map::EnergyMap;
+pub use error::Error;
+pub use film::Film;
+pub use guide::Emission;
+pub use renderer::{Renderer, RendererOptions};
+pub use self_test::LoopLimit;
+pub use statistics::{Ledger, MapSize, SceneReport, Statistics};

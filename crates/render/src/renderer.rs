@@ -1,0 +1,302 @@
+//! The renderer: scene in, picture and energy maps out.
+
+use std::{ops::Range, time::Instant};
+
+use diacaustic_scene::Scene;
+use diacaustic_surface::{Bvh, MapLayout, caster_bounds, world_triangles};
+
+use crate::{
+    Emission, EnergyMap, Error, Film, LoopLimit, MapSize, RenderParams, SceneReport, Statistics,
+    camera_pass::{CameraPass, Samples},
+    display_pass::DisplayPass,
+    energy_map::{EnergyMaps, ResolvePass, place_maps},
+    gpu::Gpu,
+    photon_pass::{PhotonPass, Photons},
+    scene_buffers::{self, SceneBuffers},
+};
+
+/// What is set once for a renderer.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RendererOptions {
+    /// Bytes that the sums of all energy maps whose size the scene leaves open may take; what the device can bind if none.
+    pub map_budget: Option<u64>,
+}
+
+/// Renders scenes on an application's device.
+///
+/// Work is submitted to the device's queue and goes on after a call returns, except where a method says that it blocks. A
+/// renderer may move between threads; its methods that change it need it whole.
+#[derive(Debug)]
+pub struct Renderer {
+    gpu: Gpu,
+    options: RendererOptions,
+    loop_limit: LoopLimit,
+    scene_layout: wgpu::BindGroupLayout,
+    photon_pass: PhotonPass,
+    resolve_pass: ResolvePass,
+    camera_pass: CameraPass,
+    display_pass: DisplayPass,
+    scene: Option<OnDevice>,
+}
+
+/// A scene on the device, and how far it is rendered.
+#[derive(Debug)]
+struct OnDevice {
+    scene: Scene,
+    buffers: SceneBuffers,
+    maps: EnergyMaps,
+    photons: Photons,
+    samples: Samples,
+    photon_count: u64,
+    sample_count: u32,
+    /// Whether photons came since the sums last became irradiance.
+    unresolved: bool,
+}
+
+impl Renderer {
+    /// The limits that the application's device must have. More `max_storage_buffer_binding_size` and `max_buffer_size` allow
+    /// larger scenes and maps.
+    pub fn required_limits() -> wgpu::Limits {
+        wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::default() }
+    }
+
+    /// Compiles the kernels and tests how the adapter treats long loops. Blocks: seconds on a software adapter that has not
+    /// cached the kernels.
+    ///
+    /// # Errors
+    /// If the device's limits are too low, the adapter ends loops too early, or the device fails.
+    pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: &RendererOptions) -> Result<Self, Error> {
+        let gpu = Gpu { device: device.clone(), queue: queue.clone() };
+        check_limits(&device.limits())?;
+        gpu.guarded(|| {
+            let loop_limit = LoopLimit::measure(&gpu)?;
+            let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
+            Ok(Self {
+                photon_pass: PhotonPass::new(&gpu, &scene_layout),
+                resolve_pass: ResolvePass::new(&gpu),
+                camera_pass: CameraPass::new(&gpu, &scene_layout),
+                display_pass: DisplayPass::new(&gpu),
+                gpu: gpu.clone(),
+                options: options.clone(),
+                loop_limit,
+                scene_layout,
+                scene: None,
+            })
+        })
+    }
+
+    /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
+    ///
+    /// # Errors
+    /// If the scene is not valid, or too large for the device; the scene set before then stays.
+    pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
+        scene.validate()?;
+        let start = Instant::now();
+        let triangles = world_triangles(scene);
+        let bvh = Bvh::build(&triangles)?;
+        let bvh_time = start.elapsed();
+        let start = Instant::now();
+        let limits = self.gpu.device.limits();
+        let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let placements = place_maps(scene, &triangles, self.options.map_budget.unwrap_or(u64::MAX).min(bindable));
+        let maps_time = start.elapsed();
+        let casters = caster_bounds(scene, &triangles);
+        let on_device = self.gpu.guarded(|| {
+            let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &placements)?;
+            let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
+            let per_invocation = self.loop_limit.photons_per_invocation();
+            Ok(OnDevice {
+                photons: Photons::new(&self.gpu, &self.photon_pass, scene, &casters, &maps, per_invocation)?,
+                samples: Samples::new(&self.gpu, &self.camera_pass, scene, &maps)?,
+                scene: scene.clone(),
+                buffers,
+                maps,
+                photon_count: 0,
+                sample_count: 0,
+                unresolved: true,
+            })
+        })?;
+        let report = SceneReport {
+            triangles: triangles.len(),
+            bvh_nodes: bvh.nodes.len(),
+            bvh_time,
+            maps_time,
+            device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.film.size(),
+            maps: map_sizes(&on_device.maps),
+            emits_photons: on_device.photons.can_emit(),
+        };
+        self.scene = Some(on_device);
+        Ok(report)
+    }
+
+    /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot
+    /// reach a caster has none, and the call does nothing.
+    ///
+    /// The maps' irradiance is right for numbers 0 to N, in any order and any pieces, each once.
+    ///
+    /// # Errors
+    /// If no scene is set or a number is beyond the sequences.
+    pub fn emit_photons(&mut self, numbers: Range<u64>) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        if numbers.is_empty() || !on_device.photons.can_emit() {
+            return Ok(());
+        }
+        let count = numbers.end - numbers.start;
+        on_device.photons.emit(&self.gpu, &self.photon_pass, &on_device.buffers.bind_group, numbers)?;
+        on_device.photon_count += count;
+        on_device.unresolved = true;
+        Ok(())
+    }
+
+    /// Submits `count` further samples of every pixel, lit by the photons emitted so far.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        if on_device.unresolved {
+            let units = on_device.photons.units_per_watt;
+            self.resolve_pass.run(&self.gpu, &on_device.maps, units, on_device.photon_count);
+            on_device.unresolved = false;
+        }
+        for _ in 0..count {
+            let group = &on_device.buffers.bind_group;
+            on_device.samples.add(&self.gpu, &self.camera_pass, group, on_device.sample_count);
+            on_device.sample_count += 1;
+        }
+        Ok(())
+    }
+
+    /// Submits the drawing of the picture so far over the whole of a texture, which may be of any renderable colour format.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn render_to_texture(&mut self, view: &wgpu::TextureView, params: &RenderParams) -> Result<(), Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        let size = [on_device.scene.settings.width, on_device.scene.settings.height];
+        self.display_pass.draw(&self.gpu, &on_device.samples.film, size, view, params);
+        Ok(())
+    }
+
+    /// Reads the picture so far. Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set, the device fails, or it cut invocations short.
+    pub fn film(&self) -> Result<Film, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        on_device.samples.read(&self.gpu, on_device.sample_count)
+    }
+
+    /// Reads an object's energy map; none if the object is no receiver. Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set, the scene has no such object, or the device fails.
+    pub fn energy_map(&self, object: usize) -> Result<Option<EnergyMap>, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        let count = on_device.scene.objects.len();
+        if object >= count {
+            return Err(Error::NoSuchObject { index: object, count });
+        }
+        let units = on_device.photons.units_per_watt;
+        on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
+    }
+
+    /// Reads what the device has counted. Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set, the device fails, or it cut invocations short.
+    pub fn statistics(&self) -> Result<Statistics, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        let counts = on_device.photons.counts(&self.gpu, on_device.scene.lights.len())?;
+        Ok(Statistics {
+            photons: on_device.photon_count,
+            deposits: u64::from(counts.deposits),
+            photon_rays: counts.rays,
+            samples: on_device.sample_count,
+            camera_rays: on_device.samples.rays(&self.gpu)?,
+            ledgers: counts.ledgers,
+        })
+    }
+
+    /// Forgets all photons and samples; the scene stays.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn restart(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        for buffer in [&on_device.maps.sums, &on_device.photons.ledger, &on_device.samples.film] {
+            self.gpu.clear(buffer);
+        }
+        on_device.photon_count = 0;
+        on_device.sample_count = 0;
+        on_device.unresolved = true;
+        Ok(())
+    }
+
+    /// Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.gpu.wait()
+    }
+
+    /// How long loops may be on this device, as found by the self-test.
+    pub fn loop_limit(&self) -> LoopLimit {
+        self.loop_limit
+    }
+
+    /// How a light emits its photons; none if it has no flux, there is no caster, or no such light.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn emission(&self, light: usize) -> Result<Option<&Emission>, Error> {
+        Ok(self.scene.as_ref().ok_or(Error::NoScene)?.photons.emission(light))
+    }
+
+    /// The layout of an object's energy map; none if it has none, or there is no such object.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn map_layout(&self, object: usize) -> Result<Option<&MapLayout>, Error> {
+        let maps = &self.scene.as_ref().ok_or(Error::NoScene)?.maps;
+        Ok(maps.placements.get(object).and_then(Option::as_ref).map(|map| &map.layout))
+    }
+}
+
+fn map_sizes(maps: &EnergyMaps) -> Vec<MapSize> {
+    let placed = maps.placements.iter().enumerate();
+    placed
+        .filter_map(|(object, map)| {
+            let layout = &map.as_ref()?.layout;
+            Some(MapSize { object, width: layout.width, height: layout.height, layers: layout.layers })
+        })
+        .collect()
+}
+
+fn check_limits(found: &wgpu::Limits) -> Result<(), Error> {
+    let needed = Renderer::required_limits();
+    let checks = [
+        (
+            "max_storage_buffers_per_shader_stage",
+            found.max_storage_buffers_per_shader_stage.into(),
+            needed.max_storage_buffers_per_shader_stage.into(),
+        ),
+        (
+            "max_compute_invocations_per_workgroup",
+            found.max_compute_invocations_per_workgroup.into(),
+            u64::from(diacaustic_shaders::WORKGROUP_SIZE),
+        ),
+        (
+            "max_storage_buffer_binding_size",
+            found.max_storage_buffer_binding_size,
+            needed.max_storage_buffer_binding_size,
+        ),
+    ];
+    for (limit, found, needed) in checks {
+        if found < needed {
+            return Err(Error::DeviceTooSmall { limit, found, needed });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,141 @@
+//! The scene on the device: bind group 0 of both passes.
+
+use diacaustic_scene::{LightKind, MaterialKind, Scene};
+use diacaustic_shaders as shaders;
+use diacaustic_shaders::material_kind;
+use diacaustic_surface::{Bvh, WorldTriangle};
+use glam::Vec2;
+
+use crate::{
+    Error,
+    energy_map::MapPlacement,
+    gpu::{Binding, Gpu, Purpose},
+};
+
+/// The bindings of `shaders/layout/scene.wgsl`.
+pub(crate) const BINDINGS: [Binding; 6] = [Binding::Read; 6];
+
+const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
+const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
+const NODES: Purpose = Purpose { what: "the bounding volume hierarchy's nodes", remedy: "use fewer triangles" };
+const OBJECTS: Purpose = Purpose { what: "the scene's objects", remedy: "use fewer objects" };
+const MATERIALS: Purpose = Purpose { what: "the scene's materials", remedy: "use fewer materials" };
+const LIGHTS: Purpose = Purpose { what: "the scene's lights", remedy: "use fewer lights" };
+
+/// The scene's buffers, and what they weigh.
+#[derive(Debug)]
+pub(crate) struct SceneBuffers {
+    pub bind_group: wgpu::BindGroup,
+    pub bytes: u64,
+}
+
+impl SceneBuffers {
+    pub fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        scene: &Scene,
+        bvh: &Bvh,
+        maps: &[Option<MapPlacement>],
+    ) -> Result<Self, Error> {
+        let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
+        let triangles: Vec<_> = bvh.triangles.iter().map(triangle).collect();
+        let corners: Vec<_> = bvh.triangles.iter().map(|t| triangle_corners(t, &maps[t.object as usize])).collect();
+        let objects: Vec<_> = maps.iter().map(object).collect();
+        let materials: Vec<_> = scene.materials.iter().map(|m| material(&m.kind)).collect();
+        let buffers = [
+            gpu.filled(NODES, nodes)?,
+            gpu.filled(TRIANGLES, &triangles)?,
+            gpu.filled(CORNERS, &corners)?,
+            gpu.filled(OBJECTS, &objects)?,
+            gpu.filled(MATERIALS, &materials)?,
+            gpu.filled(LIGHTS, &lights(scene))?,
+        ];
+        let bytes = buffers.iter().map(wgpu::Buffer::size).sum();
+        Ok(Self { bind_group: gpu.bind(layout, &buffers.each_ref()), bytes })
+    }
+}
+
+fn triangle(t: &WorldTriangle) -> shaders::Triangle {
+    shaders::Triangle {
+        corner: t.corners[0].into(),
+        object: t.object,
+        edge_1: (t.corners[1] - t.corners[0]).into(),
+        material: t.material,
+        edge_2: (t.corners[2] - t.corners[0]).into(),
+        interpolate_normals: u32::from(t.normals.is_some()),
+    }
+}
+
+fn triangle_corners(t: &WorldTriangle, map: &Option<MapPlacement>) -> shaders::TriangleCorners {
+    let normals = t.normals.unwrap_or_default();
+    let places = map.as_ref().map_or([Vec2::ZERO; 3], |map| t.arrange(map.layout.corners[t.triangle as usize]));
+    shaders::TriangleCorners {
+        normal_0: normals[0].into(),
+        texel_x_2: places[2].x,
+        normal_1: normals[1].into(),
+        texel_y_2: places[2].y,
+        normal_2: normals[2].into(),
+        padding: 0,
+        texel_01: [places[0].x, places[0].y, places[1].x, places[1].y],
+    }
+}
+
+fn object(map: &Option<MapPlacement>) -> shaders::Object {
+    map.as_ref().map_or_else(shaders::Object::default, |map| shaders::Object {
+        map_first_texel: map.first_texel as u32,
+        map_width: map.layout.width,
+        map_height: map.layout.height,
+        map_layers: map.layout.layers,
+    })
+}
+
+fn material(kind: &MaterialKind) -> shaders::Material {
+    let blank = shaders::Material { tint: [1.0; 3], ior: 1.0, ..Default::default() };
+    match *kind {
+        MaterialKind::Diffuse { albedo } => {
+            shaders::Material { kind: material_kind::DIFFUSE, reflectance: albedo.into(), ..blank }
+        }
+        MaterialKind::Phong { ambient, diffuse, specular, shininess } => shaders::Material {
+            kind: material_kind::PHONG,
+            reflectance: diffuse.into(),
+            specular: specular.into(),
+            ambient: ambient.into(),
+            shininess,
+            ..blank
+        },
+        MaterialKind::Mirror { reflectance } => {
+            shaders::Material { kind: material_kind::MIRROR, reflectance: reflectance.into(), ..blank }
+        }
+        MaterialKind::Dielectric { ior, tint, absorption } => shaders::Material {
+            kind: material_kind::DIELECTRIC,
+            tint: tint.into(),
+            ior,
+            absorption: absorption.into(),
+            ..blank
+        },
+    }
+}
+
+/// The lights, which the camera pass chooses in proportion to their power.
+fn lights(scene: &Scene) -> Vec<shaders::SphereLight> {
+    let total: f32 = scene.lights.iter().map(|light| light.kind.flux().element_sum()).sum();
+    let mut before = 0.0;
+    let mut list: Vec<_> = scene
+        .lights
+        .iter()
+        .map(|light| {
+            let LightKind::Sphere { center, radius, flux } = light.kind;
+            before += if total > 0.0 { flux.element_sum() / total } else { 0.0 };
+            shaders::SphereLight {
+                center: center.into(),
+                radius,
+                radiance: light.kind.radiance().into(),
+                cumulative_probability: before,
+            }
+        })
+        .collect();
+    if let Some(last) = list.iter().rposition(|light| light.radiance != [0.0; 3]) {
+        list[last..].iter_mut().for_each(|light| light.cumulative_probability = 1.0);
+    }
+    list
+}

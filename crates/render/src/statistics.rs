@@ -1,0 +1,74 @@
+//! What a render did and what it weighs.
+
+use std::time::Duration;
+
+/// What became of one light's photons, in units of fixed-point sums. The terms are differences of the same integers, so that
+/// emitted = deposited + direct + absorbed + escaped + cut off + shading normals exactly.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ledger {
+    /// Flux that left the light toward the casters' bounds.
+    pub emitted: [i64; 3],
+    /// Flux in energy maps.
+    pub deposited: [i64; 3],
+    /// Flux that met a receiver before any caster: the camera pass owns it.
+    pub direct: [i64; 3],
+    /// Flux lost to tints, media, mirrors and lights.
+    pub absorbed: [i64; 3],
+    /// Flux that left the scene.
+    pub escaped: [i64; 3],
+    /// Flux of paths that met more surfaces than allowed.
+    pub cut_off: [i64; 3],
+    /// Flux taken (negative: given) by interpolated normals.
+    pub shading_normals: [i64; 3],
+    /// Units in a watt, times the photons emitted over every light.
+    pub units_per_watt: f64,
+}
+
+/// The size of one object's energy map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MapSize {
+    /// Index of the object.
+    pub object: usize,
+    /// Texels along x.
+    pub width: u32,
+    /// Texels along y.
+    pub height: u32,
+    /// Layers.
+    pub layers: u32,
+}
+
+/// What setting a scene built.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneReport {
+    /// Triangles with an area.
+    pub triangles: usize,
+    /// Nodes of the bounding volume hierarchy.
+    pub bvh_nodes: usize,
+    /// Time to build the hierarchy.
+    pub bvh_time: Duration,
+    /// Time to lay out the maps and integrate their texels' areas.
+    pub maps_time: Duration,
+    /// Bytes of the scene, the maps and the film on the device.
+    pub device_bytes: u64,
+    /// The maps.
+    pub maps: Vec<MapSize>,
+    /// Whether any light sends photons: it has flux and there is a caster.
+    pub emits_photons: bool,
+}
+
+/// What the device has counted since the scene was set.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Statistics {
+    /// Photons emitted, over every light.
+    pub photons: u64,
+    /// Photons that reached a receiver through a caster.
+    pub deposits: u64,
+    /// Rays of the photon pass.
+    pub photon_rays: u64,
+    /// Samples in each pixel.
+    pub samples: u32,
+    /// Rays of the camera pass, shadow rays among them.
+    pub camera_rays: u64,
+    /// A ledger for each light.
+    pub ledgers: Vec<Ledger>,
+}

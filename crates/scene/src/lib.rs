@@ -1,0 +1,63 @@
+//! Scene description for diacaustic: TOML, OBJ and primitives, validated. No GPU.
+//!
+//! [`load_scene`] reads a scene file and the meshes that it names. A [`Scene`] can be built in code as well;
+//! [`Scene::validate`] then checks it the same way.
+//!
+//! ```
+//! use std::path::Path;
+//!
+//! let text = r#"
+//!     [camera]
+//!     position = [0, 2, 3]
+//!     look_at = [0, 0.2, 0]
+//!     vertical_fov = 40
+//!
+//!     [materials]
+//!     glass = { type = "dielectric", ior = 1.5 }
+//!     plaster = { type = "diffuse", albedo = 0.8 }
+//!
+//!     [[lights]]
+//!     type = "sphere"
+//!     center = [1, 2.5, 0.6]
+//!     radius = 0.05
+//!     flux = 35
+//!
+//!     [[objects]]
+//!     sphere = { center = [0, 0.3, 0], radius = 0.3 }
+//!     material = "glass"
+//!
+//!     [[objects]]
+//!     name = "floor"
+//!     rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }
+//!     material = "plaster"
+//! "#;
+//! let loaded = diacaustic_scene::parse_scene(text, Path::new("."), "ball.toml")?;
+//! assert!(loaded.warnings.is_empty());
+//! assert_eq!(loaded.scene.objects[1].name, "floor");
+//! assert!(loaded.scene.materials[loaded.scene.objects[0].material_of(0)].kind.is_caster());
+//!
+//! let error = diacaustic_scene::parse_scene(&text.replace("ior", "iro"), Path::new("."), "ball.toml").unwrap_err();
+//! assert!(error.to_string().contains("[materials.glass]: unknown key \"iro\"; did you mean \"ior\"?"));
+//! # Ok::<(), diacaustic_scene::Error>(())
+//! ```
+
+mod camera;
+mod error;
+mod light;
+mod material;
+mod mesh;
+mod obj;
+mod primitives;
+mod read_toml;
+mod scene;
+mod solid;
+mod validate;
+
+pub use camera::Camera;
+pub use error::{Error, Location, Subject, Warning};
+pub use light::{Light, LightKind};
+pub use material::{Material, MaterialKind};
+pub use mesh::{Chart, Mesh};
+pub use obj::{ObjFile, load_obj, parse_obj};
+pub use read_toml::{LoadedScene, load_scene, parse_scene};
+pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};

@@ -1,0 +1,79 @@
+//! Indexed triangle meshes in object space.
+
+use glam::{Vec2, Vec3};
+
+/// An indexed triangle mesh in its object's frame, in metres.
+///
+/// Triangles are counter-clockwise seen from outside. A vertex is a (position, normal, uv) triple: a position that
+/// carries two normals stands in the list twice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Vertex positions, metres, object frame.
+    pub positions: Vec<Vec3>,
+    /// Unit vertex normals, one for each position, or empty for flat facets.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, one for each position, or empty.
+    pub uvs: Vec<Vec2>,
+    /// Vertex indices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// For each triangle, its index into [`Mesh::material_slots`]; empty when there is one slot or none.
+    pub triangle_slots: Vec<u32>,
+    /// Names under which the file tells its materials apart (MTL names); empty when the file names none.
+    pub material_slots: Vec<String>,
+    /// How the mesh is laid out on its energy map.
+    pub chart: Chart,
+}
+
+/// How a mesh's surface is mapped to the plane of its energy map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Chart {
+    /// The texture coordinates, which are known not to overlap and are in metres along the surface
+    /// (the natural map of a rectangle or a box).
+    Natural,
+    /// The texture coordinates if they do not overlap, else a planar projection.
+    #[default]
+    Automatic,
+}
+
+impl Mesh {
+    /// The three corners of a triangle, object frame.
+    ///
+    /// # Panics
+    /// If `triangle` or one of its indices is out of range; a validated mesh has none that is.
+    pub fn corners(&self, triangle: usize) -> [Vec3; 3] {
+        self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// Twice the area of a triangle times its unit normal, m².
+    pub fn double_area_normal(&self, triangle: usize) -> Vec3 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a)
+    }
+
+    /// The number of edges that do not join exactly two triangles of opposite direction, after welding vertices
+    /// of equal position. 0 for a closed, consistently wound surface.
+    pub fn open_edges(&self) -> usize {
+        let mut ids = std::collections::HashMap::new();
+        let welded: Vec<u32> = self
+            .positions
+            .iter()
+            .map(|p| {
+                // Adding 0 turns -0 into +0, so that both weld.
+                let key = (*p + Vec3::ZERO).to_array().map(f32::to_bits);
+                let next = ids.len() as u32;
+                *ids.entry(key).or_insert(next)
+            })
+            .collect();
+        let mut balance = std::collections::HashMap::<(u32, u32), (i32, u32)>::new();
+        for corners in &self.triangles {
+            let v = corners.map(|vertex| welded[vertex as usize]);
+            for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
+                let (key, direction) = if a < b { ((a, b), 1) } else { ((b, a), -1) };
+                let entry = balance.entry(key).or_default();
+                entry.0 += direction;
+                entry.1 += 1;
+            }
+        }
+        balance.values().filter(|&&(sum, uses)| sum != 0 || uses % 2 != 0).count()
+    }
+}

@@ -1,0 +1,255 @@
+//! Reads scenes from TOML.
+
+mod objects;
+mod table;
+
+use std::{fs, path::Path};
+
+use glam::Vec3;
+
+use self::{
+    objects::ObjectReader,
+    table::{Document, Table},
+};
+use crate::{
+    Camera, Error, Light, LightKind, Location, Material, MaterialKind, OutputSettings, PixelFilter, RenderSettings,
+    Scene, Subject, ToneCurve, Warning,
+};
+
+/// A scene from a file, valid, with what is odd about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// What [`Scene::validate`] and the mesh readers noted.
+    pub warnings: Vec<Warning>,
+}
+
+/// Reads a scene from a TOML file; the paths in it are relative to its folder.
+///
+/// # Errors
+/// If the file or a mesh that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
+pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
+    let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
+    parse_scene(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string())
+}
+
+/// Reads a scene from TOML text. Relative paths in it start at `base_dir`; messages call the text `file_name`.
+///
+/// # Errors
+/// If the text or a mesh that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
+pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<LoadedScene, Error> {
+    let document = Document::parse(text, file_name)?;
+    let sections = Sections::split(document.root())?;
+    let (scene, mut warnings) = sections.read(base_dir)?;
+    warnings.extend(scene.validate().map_err(|error| sections.locate(error))?);
+    Ok(LoadedScene { scene, warnings })
+}
+
+/// The tables of a scene file.
+struct Sections<'d> {
+    root: Table<'d>,
+    camera: Table<'d>,
+    render: Option<Table<'d>>,
+    output: Option<Table<'d>>,
+    materials: Vec<(String, Table<'d>)>,
+    lights: Vec<Table<'d>>,
+    objects: Vec<Table<'d>>,
+}
+
+impl<'d> Sections<'d> {
+    fn split(root: Table<'d>) -> Result<Self, Error> {
+        root.allow_only(&["background", "ambient", "camera", "render", "output", "materials", "lights", "objects"])?;
+        let optional =
+            |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
+        Ok(Self {
+            camera: root.require("camera", "a table: [camera]")?.table("[camera]".to_owned(), "a table: [camera]")?,
+            render: optional("render", "a table: [render]")?,
+            output: optional("output", "a table: [output]")?,
+            materials: named_tables(&root, "materials", "tables: [materials.a_name]")?,
+            lights: listed_tables(&root, "lights", "an array of tables: [[lights]]")?,
+            objects: listed_tables(&root, "objects", "an array of tables: [[objects]]")?,
+            root,
+        })
+    }
+
+    fn read(&self, base_dir: &Path) -> Result<(Scene, Vec<Warning>), Error> {
+        let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
+        let mut materials = Vec::new();
+        for (name, table) in &self.materials {
+            materials.push(Material { name: name.clone(), kind: read_material(table)? });
+        }
+        let mut scene = Scene {
+            background: color("background")?,
+            ambient: color("ambient")?,
+            camera: read_camera(&self.camera)?,
+            settings: self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default(),
+            output: self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default(),
+            lights: read_lights(&self.lights)?,
+            materials: Vec::new(),
+            objects: Vec::new(),
+        };
+        let mut reader = ObjectReader::new(base_dir, materials);
+        scene.objects = reader.read_all(&self.objects)?;
+        scene.materials = reader.materials;
+        Ok((scene, reader.warnings))
+    }
+
+    /// Adds to an error of [`Scene::validate`] where the file sets what is at fault.
+    fn locate(&self, mut error: Error) -> Error {
+        if let Error::Invalid { at, subject, key, .. } = &mut error {
+            *at = Some(self.location_of(subject, key));
+        }
+        error
+    }
+
+    fn location_of(&self, subject: &Subject, key: &str) -> Location {
+        let table = match subject {
+            Subject::Camera => Some(&self.camera),
+            Subject::Render => self.render.as_ref(),
+            Subject::Output => self.output.as_ref(),
+            Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),
+            Subject::Light { index, .. } => self.lights.get(*index),
+            Subject::Object { index, .. } => self.objects.get(*index),
+            Subject::Scene => None,
+        };
+        table.unwrap_or(&self.root).location_of(key)
+    }
+}
+
+fn named_tables<'d>(
+    root: &Table<'d>,
+    key: &'static str,
+    expected: &'static str,
+) -> Result<Vec<(String, Table<'d>)>, Error> {
+    let Some(entry) = root.get(key) else { return Ok(Vec::new()) };
+    let all = entry.table(format!("[{key}]"), expected)?;
+    let named = |entry: table::Entry<'d>| {
+        Ok((entry.key().to_owned(), entry.table(format!("[{key}.{}]", entry.key()), expected)?))
+    };
+    all.entries().into_iter().map(named).collect()
+}
+
+fn listed_tables<'d>(root: &Table<'d>, key: &'static str, expected: &'static str) -> Result<Vec<Table<'d>>, Error> {
+    let Some(entry) = root.get(key) else { return Ok(Vec::new()) };
+    let elements = entry.elements(expected)?.into_iter().enumerate();
+    elements.map(|(index, element)| element.table(format!("[[{key}]] #{}", index + 1), expected)).collect()
+}
+
+fn read_camera(table: &Table<'_>) -> Result<Camera, Error> {
+    table.allow_only(&["position", "look_at", "up", "vertical_fov", "aperture_radius", "focus_distance"])?;
+    let position = table.require("position", "3 numbers [x, y, z], metres")?.vector()?;
+    let look_at = table.require("look_at", "3 numbers [x, y, z], metres")?.vector()?;
+    Ok(Camera {
+        position,
+        look_at,
+        up: table.get("up").map_or(Ok(Vec3::Y), |entry| entry.vector())?,
+        vertical_fov: table.require("vertical_fov", "a number of degrees")?.number()?,
+        aperture_radius: table.get("aperture_radius").map_or(Ok(0.0), |entry| entry.number())?,
+        focus_distance: table.get("focus_distance").map_or(Ok(position.distance(look_at)), |entry| entry.number())?,
+    })
+}
+
+fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
+    table.allow_only(&["width", "height", "samples", "photons", "seed", "max_depth", "map_size", "filter"])?;
+    let default = RenderSettings::default();
+    let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
+    let filters = [("box", PixelFilter::Box), ("blackman-harris", PixelFilter::BlackmanHarris)];
+    Ok(RenderSettings {
+        width: whole("width", default.width)?,
+        height: whole("height", default.height)?,
+        samples: whole("samples", default.samples)?,
+        photons: table.get("photons").map_or(Ok(default.photons), |entry| entry.whole())?,
+        seed: whole("seed", default.seed)?,
+        max_depth: whole("max_depth", default.max_depth)?,
+        map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
+        filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
+    })
+}
+
+fn read_output(table: &Table<'_>, base_dir: &Path) -> Result<OutputSettings, Error> {
+    table.allow_only(&["files", "exposure", "tone"])?;
+    let default = OutputSettings::default();
+    let tones = [("plain", ToneCurve::Plain), ("filmic", ToneCurve::Filmic)];
+    let mut files = Vec::new();
+    if let Some(entry) = table.get("files") {
+        for element in entry.elements("an array of file names")? {
+            files.push(base_dir.join(element.string("a file name")?));
+        }
+    }
+    Ok(OutputSettings {
+        exposure: table.get("exposure").map_or(Ok(default.exposure), |entry| entry.number())?,
+        tone: table.get("tone").map_or(Ok(default.tone), |entry| entry.choice("tone curve", &tones))?,
+        files,
+    })
+}
+
+/// What `type` in a material's table stands for.
+#[derive(Clone, Copy)]
+enum MaterialType {
+    Diffuse,
+    Phong,
+    Mirror,
+    Dielectric,
+}
+
+impl MaterialType {
+    const NAMES: [(&str, Self); 4] = [
+        ("diffuse", Self::Diffuse),
+        ("phong", Self::Phong),
+        ("mirror", Self::Mirror),
+        ("dielectric", Self::Dielectric),
+    ];
+
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Diffuse => &["type", "albedo"],
+            Self::Phong => &["type", "ambient", "diffuse", "specular", "shininess"],
+            Self::Mirror => &["type", "reflectance"],
+            Self::Dielectric => &["type", "ior", "tint", "absorption"],
+        }
+    }
+}
+
+fn read_material(table: &Table<'_>) -> Result<MaterialKind, Error> {
+    let expected = "the name of a material type: \"diffuse\", \"phong\", \"mirror\" or \"dielectric\"";
+    let material_type = table.require("type", expected)?.choice("material type", &MaterialType::NAMES)?;
+    table.allow_only(material_type.keys())?;
+    let color = |key| table.require(key, "a colour: 3 numbers [r, g, b] or one number for gray")?.color();
+    let color_or = |key, default| table.get(key).map_or(Ok(Vec3::splat(default)), |entry| entry.color());
+    Ok(match material_type {
+        MaterialType::Diffuse => MaterialKind::Diffuse { albedo: color("albedo")? },
+        MaterialType::Phong => MaterialKind::Phong {
+            ambient: color("ambient")?,
+            diffuse: color("diffuse")?,
+            specular: color("specular")?,
+            shininess: table.require("shininess", "a number, the exponent of the lobe")?.number()?,
+        },
+        MaterialType::Mirror => MaterialKind::Mirror { reflectance: color("reflectance")? },
+        MaterialType::Dielectric => MaterialKind::Dielectric {
+            ior: table.require("ior", "a number, the index of refraction")?.number()?,
+            tint: color_or("tint", 1.0)?,
+            absorption: color_or("absorption", 0.0)?,
+        },
+    })
+}
+
+fn read_lights(tables: &[Table<'_>]) -> Result<Vec<Light>, Error> {
+    let mut lights = Vec::new();
+    for (index, table) in tables.iter().enumerate() {
+        table.require("type", "the name of a light type: \"sphere\"")?.choice("light type", &[("sphere", ())])?;
+        table.allow_only(&["type", "name", "center", "radius", "flux"])?;
+        let name = table.get("name").map(|entry| entry.string("a string")).transpose()?;
+        lights.push(Light {
+            name: name.map_or_else(|| format!("light {}", index + 1), str::to_owned),
+            kind: LightKind::Sphere {
+                center: table.require("center", "3 numbers [x, y, z], metres")?.vector()?,
+                radius: table.require("radius", "a number, metres")?.number()?,
+                flux: table
+                    .require("flux", "watts for each channel: [r, g, b] or one number for all three")?
+                    .color()?,
+            },
+        });
+    }
+    Ok(lights)
+}

@@ -1,0 +1,127 @@
+//! The validated scene, as the renderer takes it.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3};
+
+use crate::{Camera, Light, Material, Mesh};
+
+/// Everything that a render depends on. Built by a reader of this crate or in code; [`Scene::validate`] checks it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The view.
+    pub camera: Camera,
+    /// Radiance of what lies beyond every object, W/(m² sr).
+    pub background: Vec3,
+    /// Ambient radiance of the `phong` material, W/(m² sr).
+    pub ambient: Vec3,
+    /// The emitters.
+    pub lights: Vec<Light>,
+    /// The materials.
+    pub materials: Vec<Material>,
+    /// The objects.
+    pub objects: Vec<Object>,
+    /// Size, sampling and limits.
+    pub settings: RenderSettings,
+    /// How the picture is written.
+    pub output: OutputSettings,
+}
+
+/// A mesh placed in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Its name in statistics, messages and the files of its energy map.
+    pub name: String,
+    /// Its surface, object frame. Objects may share one.
+    pub mesh: Arc<Mesh>,
+    /// Placement; invertible.
+    pub world_from_object: Affine3A,
+    /// For each material slot of the mesh (one if the mesh has none), an index into [`Scene::materials`].
+    pub materials: Vec<usize>,
+    /// Texels along the longer side of its energy map; the renderer's default if none.
+    pub map_size: Option<u32>,
+}
+
+impl Object {
+    /// The index into [`Scene::materials`] of a triangle.
+    ///
+    /// # Panics
+    /// If `triangle` is out of range; a validated object's slots are all in range.
+    pub fn material_of(&self, triangle: usize) -> usize {
+        let slot = self.mesh.triangle_slots.get(triangle).copied().unwrap_or(0);
+        self.materials[slot as usize]
+    }
+}
+
+/// Size, sampling and limits of a render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderSettings {
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+    /// Camera samples a pixel.
+    pub samples: u32,
+    /// Photons in all, over every light.
+    pub photons: u64,
+    /// Seed of every random number.
+    pub seed: u32,
+    /// The most surfaces that a photon or a camera path meets before it is cut off.
+    pub max_depth: u32,
+    /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
+    pub map_size: Option<u32>,
+    /// The pixel's reconstruction filter.
+    pub filter: PixelFilter,
+}
+
+/// The pixel's reconstruction filter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelFilter {
+    /// Even weight over the pixel's square.
+    #[default]
+    Box,
+    /// The four-term Blackman–Harris window, 4 pixels wide (Harris 1978).
+    BlackmanHarris,
+}
+
+/// How the picture is written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputSettings {
+    /// Stops of exposure applied to PNG: radiance is multiplied by 2^exposure.
+    pub exposure: f32,
+    /// The tone curve applied to PNG.
+    pub tone: ToneCurve,
+    /// Files to write when the command line names none, as the scene file states them, resolved against its folder.
+    pub files: Vec<std::path::PathBuf>,
+}
+
+/// The tone curve applied before sRGB encoding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneCurve {
+    /// None: values over 1 are clipped.
+    Plain,
+    /// A filmic shoulder that keeps bright caustics from clipping.
+    #[default]
+    Filmic,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            width: 512,
+            height: 512,
+            samples: 16,
+            photons: 1_000_000,
+            seed: 0,
+            max_depth: 32,
+            map_size: None,
+            filter: PixelFilter::default(),
+        }
+    }
+}
+
+impl Default for OutputSettings {
+    fn default() -> Self {
+        Self { exposure: 0.0, tone: ToneCurve::default(), files: Vec::new() }
+    }
+}

@@ -1,0 +1,93 @@
+//! Bounding spheres of casters: where lights aim.
+
+use diacaustic_scene::Scene;
+use glam::Vec3;
+
+use crate::WorldTriangle;
+
+/// A sphere around some of the scene's triangles, world frame, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoundingSphere {
+    /// Its centre.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+}
+
+impl BoundingSphere {
+    /// The sphere around the centre of the points' box that holds all of them.
+    fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
+        let (low, high) = points
+            .clone()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)));
+        let center = 0.5 * (low + high);
+        let radius = points.map(|point| point.distance(center)).fold(0.0, f32::max);
+        // The factor covers the rounding of the distances.
+        Self { center, radius: radius * 1.000_001 }
+    }
+
+    /// The smallest sphere around two.
+    fn union(self, other: Self) -> Self {
+        let between = other.center - self.center;
+        let distance = between.length();
+        if distance + other.radius <= self.radius {
+            return self;
+        }
+        if distance + self.radius <= other.radius {
+            return other;
+        }
+        let radius = 0.5 * (distance + self.radius + other.radius);
+        Self { center: self.center + between * ((radius - self.radius) / distance), radius: radius * 1.000_001 }
+    }
+}
+
+/// The bounding spheres of each object's casting triangles.
+pub fn caster_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<BoundingSphere> {
+    let casts: Vec<bool> = scene.materials.iter().map(|material| material.kind.is_caster()).collect();
+    triangles
+        .chunk_by(|a, b| a.object == b.object)
+        .filter_map(|object| {
+            let corners = object.iter().filter(|t| casts[t.material as usize]).flat_map(|t| t.corners);
+            corners.clone().next().map(|_| BoundingSphere::around(corners))
+        })
+        .collect()
+}
+
+/// Merges the two spheres whose union has the least radius until at most `limit` remain.
+pub fn merge_spheres(mut spheres: Vec<BoundingSphere>, limit: usize) -> Vec<BoundingSphere> {
+    while spheres.len() > limit.max(1) {
+        let mut best = (f32::INFINITY, 0, 1);
+        for i in 0..spheres.len() {
+            for j in i + 1..spheres.len() {
+                let radius = spheres[i].union(spheres[j]).radius;
+                if radius < best.0 {
+                    best = (radius, i, j);
+                }
+            }
+        }
+        let merged = spheres[best.1].union(spheres[best.2]);
+        spheres.swap_remove(best.2);
+        spheres[best.1] = merged;
+    }
+    spheres
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn merged_spheres_hold_the_originals() {
+        let spheres: Vec<_> = (0..40)
+            .map(|i| BoundingSphere {
+                center: Vec3::new((i * 7 % 11) as f32, (i * 5 % 13) as f32, i as f32),
+                radius: 0.1 * (1 + i % 4) as f32,
+            })
+            .collect();
+        let merged = merge_spheres(spheres.clone(), 5);
+        assert_eq!(merged.len(), 5);
+        for sphere in spheres {
+            assert!(merged.iter().any(|m| m.center.distance(sphere.center) + sphere.radius <= m.radius * 1.0001));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Areas of texels.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use crate::{MapLayout, WorldTriangle};
+
+/// The area of each texel of one layer, m²: the integral of its bilinear weight over the object's surface in the world, so
+/// that the areas sum to the surface's area.
+///
+/// `triangles` are the object's, in any order; those without an area may be missing.
+pub fn texel_areas(layout: &MapLayout, triangles: &[WorldTriangle]) -> Vec<f64> {
+    let mut areas = Areas {
+        width: layout.width as usize,
+        last_cell: DVec2::new(f64::from(layout.width - 2), f64::from(layout.height - 2)),
+        sums: vec![0.0; layout.width as usize * layout.height as usize],
+    };
+    for triangle in triangles {
+        let places = triangle.arrange(layout.corners[triangle.triangle as usize]).map(|p| p.as_dvec2());
+        let area = 0.5 * world_double_area(triangle.corners);
+        let chart_area = 0.5 * (places[1] - places[0]).perp_dot(places[2] - places[0]).abs();
+        if chart_area > 1e-9 {
+            areas.add_triangle(places, area / chart_area);
+        } else {
+            areas.add_folded(places, area);
+        }
+    }
+    areas.sums
+}
+
+fn world_double_area(corners: [Vec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(|p| DVec3::new(p.x.into(), p.y.into(), p.z.into()));
+    (b - a).cross(c - a).length()
+}
+
+struct Areas {
+    width: usize,
+    /// The last cell's lower corner.
+    last_cell: DVec2,
+    sums: Vec<f64>,
+}
+
+impl Areas {
+    /// Adds a triangle of the plane, each unit of which stands for `density` m².
+    fn add_triangle(&mut self, places: [DVec2; 3], density: f64) {
+        let low = places[0].min(places[1]).min(places[2]).floor().clamp(DVec2::ZERO, self.last_cell);
+        let high = places[0].max(places[1]).max(places[2]).ceil();
+        for y in low.y as usize..=((high.y - 1.0).clamp(low.y, self.last_cell.y) as usize) {
+            let above = clip(&places, |p| p.y - y as f64);
+            let strip = clip(&above, |p| (y + 1) as f64 - p.y);
+            let Some((left, right)) = x_range(&strip) else { continue };
+            let first = left.floor().clamp(0.0, self.last_cell.x) as usize;
+            let last = (right.ceil() - 1.0).clamp(first as f64, self.last_cell.x) as usize;
+            for x in first..=last {
+                let corner = DVec2::new(x as f64, y as f64);
+                if cell_is_inside(corner, &places) {
+                    self.add_moments(x, y, density, [1.0, 0.5, 0.5, 0.25]);
+                } else {
+                    let right_of = clip(&strip, |p| p.x - x as f64);
+                    let cell = clip(&right_of, |p| (x + 1) as f64 - p.x);
+                    self.add_moments(x, y, density, moments(&cell, corner));
+                }
+            }
+        }
+    }
+
+    /// Adds `area` m² of a triangle that the chart folds to a line or a point, piece by piece.
+    fn add_folded(&mut self, places: [DVec2; 3], area: f64) {
+        let [a, b, c] = places;
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        let pieces = (4.0 * longest).ceil().clamp(1.0, 256.0) as usize;
+        let share = area / (pieces * pieces) as f64;
+        // The triangle is cut into pieces × pieces congruent ones, upright and inverted, which differ in `within`.
+        let piece_center = |[i, j]: [usize; 2], within: f64| {
+            a + ((b - a) * (i as f64 + within) + (c - a) * (j as f64 + within)) / pieces as f64
+        };
+        for i in 0..pieces {
+            for j in 0..pieces - i {
+                self.add_point(piece_center([i, j], 1.0 / 3.0), share);
+                if i + j + 1 < pieces {
+                    self.add_point(piece_center([i, j], 2.0 / 3.0), share);
+                }
+            }
+        }
+    }
+
+    /// Adds an area at one point.
+    fn add_point(&mut self, place: DVec2, area: f64) {
+        let cell = place.floor().clamp(DVec2::ZERO, self.last_cell);
+        let f = (place - cell).clamp(DVec2::ZERO, DVec2::ONE);
+        self.add_moments(cell.x as usize, cell.y as usize, area, [1.0, f.x, f.y, f.x * f.y]);
+    }
+
+    /// Adds the moments (1, s, t, st) of an area in a cell's own coordinates to the cell's four texels.
+    fn add_moments(&mut self, x: usize, y: usize, density: f64, [one, s, t, st]: [f64; 4]) {
+        let first = y * self.width + x;
+        self.sums[first] += density * (one - s - t + st);
+        self.sums[first + 1] += density * (s - st);
+        self.sums[first + self.width] += density * (t - st);
+        self.sums[first + self.width + 1] += density * st;
+    }
+}
+
+fn cell_is_inside(corner: DVec2, [a, b, c]: &[DVec2; 3]) -> bool {
+    let orientation = (*b - *a).perp_dot(*c - *a);
+    [(a, b), (b, c), (c, a)].iter().all(|(start, end)| {
+        let edge = (**end - **start) * orientation.signum();
+        // The cell's corner farthest outside this edge decides.
+        let farthest = corner + DVec2::new(f64::from(edge.y > 0.0), f64::from(edge.x < 0.0));
+        edge.perp_dot(farthest - **start) >= 0.0
+    })
+}
+
+/// The part of a convex polygon where `inside` is not negative (Sutherland and Hodgman 1974).
+fn clip(polygon: &[DVec2], inside: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, &start) in polygon.iter().enumerate() {
+        let end = polygon[(k + 1) % polygon.len()];
+        let (from, to) = (inside(start), inside(end));
+        if from >= 0.0 {
+            kept.push(start);
+        }
+        if (from >= 0.0) != (to >= 0.0) {
+            kept.push(start + (end - start) * (from / (from - to)));
+        }
+    }
+    kept
+}
+
+fn x_range(polygon: &[DVec2]) -> Option<(f64, f64)> {
+    let range = polygon.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p.x), h.max(p.x)));
+    (range.0 <= range.1).then_some(range)
+}
+
+/// The integrals of 1, s, t and st over a convex polygon in a cell with lower corner `corner`. The rule at the middles of a
+/// triangle's sides is exact for quadratics.
+fn moments(polygon: &[DVec2], corner: DVec2) -> [f64; 4] {
+    let mut sums = [0.0; 4];
+    for k in 1..polygon.len().saturating_sub(1) {
+        let [a, b, c] = [polygon[0], polygon[k], polygon[k + 1]].map(|p| p - corner);
+        let area = 0.5 * (b - a).perp_dot(c - a).abs();
+        for middle in [0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)] {
+            sums[0] += area / 3.0;
+            sums[1] += area / 3.0 * middle.x;
+            sums[2] += area / 3.0 * middle.y;
+            sums[3] += area / 3.0 * middle.x * middle.y;
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec2;
+    use proptest::prelude::*;
+
+    fn triangle(corners: [Vec3; 3]) -> WorldTriangle {
+        WorldTriangle { corners, normals: None, object: 0, triangle: 0, material: 0, exchanged: false }
+    }
+
+    #[test]
+    fn a_unit_square_has_whole_halved_and_quartered_texels() {
+        let p = [Vec2::new(0.0, 0.0), Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0), Vec2::new(0.0, 3.0)];
+        let layout = MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]] };
+        let world = layout.corners.iter().enumerate().map(|(i, places)| WorldTriangle {
+            triangle: i as u32,
+            ..triangle(places.map(|place| Vec3::new(place.x, 0.0, place.y)))
+        });
+        let areas = texel_areas(&layout, &world.collect::<Vec<_>>());
+        for y in 0..4 {
+            for x in 0..5 {
+                let share = |at: usize, last: usize| if at == 0 || at == last { 0.5 } else { 1.0 };
+                assert!((areas[y * 5 + x] - share(x, 4) * share(y, 3)).abs() < 1e-12, "texel ({x}, {y})");
+            }
+        }
+    }
+
+    /// Σ over random points of their bilinear weights, against the exact integral.
+    #[test]
+    fn areas_are_the_integral_of_the_weights() {
+        let places = [Vec2::new(0.3, 0.2), Vec2::new(5.7, 1.1), Vec2::new(2.2, 6.4)];
+        let layout = MapLayout { width: 7, height: 8, layers: 1, corners: vec![places] };
+        let areas = texel_areas(&layout, &[triangle([Vec3::ZERO, Vec3::X, Vec3::Y])]);
+        let steps = 1500;
+        let mut expected = vec![0.0; areas.len()];
+        for (i, j) in (0..steps).flat_map(|i| (0..steps - i).map(move |j| (i, j))) {
+            for within in if i + j + 1 < steps { &[1.0 / 3.0, 2.0 / 3.0][..] } else { &[1.0 / 3.0][..] } {
+                let (u, v) = ((f64::from(i) + within) / f64::from(steps), (f64::from(j) + within) / f64::from(steps));
+                let p = places.map(|p| p.as_dvec2());
+                let at = p[0] + (p[1] - p[0]) * u + (p[2] - p[0]) * v;
+                let (cell, f) = (at.floor(), at - at.floor());
+                let first = cell.y as usize * 7 + cell.x as usize;
+                for (k, weight) in
+                    [(0, (1.0 - f.x) * (1.0 - f.y)), (1, f.x * (1.0 - f.y)), (7, (1.0 - f.x) * f.y), (8, f.x * f.y)]
+                {
+                    expected[first + k] += weight * 0.5 / f64::from(steps * steps);
+                }
+            }
+        }
+        for (texel, (found, expected)) in areas.iter().zip(&expected).enumerate() {
+            assert!((found - expected).abs() < 1e-5, "texel {texel}: {found} against {expected}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn areas_sum_to_the_surface(
+            places in prop::array::uniform3((0.0f32..30.0, 0.0f32..20.0)),
+            corners in prop::array::uniform3(prop::array::uniform3(-5.0f32..5.0)),
+            fold in prop::bool::ANY,
+        ) {
+            let mut places = places.map(|(x, y)| Vec2::new(x, y));
+            if fold {
+                places[2] = places[0].lerp(places[1], 0.3);
+            }
+            let layout = MapLayout { width: 31, height: 21, layers: 1, corners: vec![places] };
+            let world = triangle(corners.map(Vec3::from));
+            let areas = texel_areas(&layout, &[world]);
+            let surface = 0.5 * world_double_area(world.corners);
+            prop_assert!(areas.iter().all(|&area| area >= -1e-9 * surface));
+            prop_assert!((areas.iter().sum::<f64>() - surface).abs() <= 1e-6 * surface + 1e-12);
+        }
+    }
+}

@@ -1,0 +1,51 @@
+// The surface at a hit.
+
+import package::geometry::traverse::Hit;
+import package::layout::scene::{corners, triangles};
+
+/// A point on a surface, seen along a ray.
+struct SurfacePoint {
+    /// Position, metres, world frame.
+    position: vec3<f32>,
+    /// Unit geometric normal, turned to the side that the ray comes from.
+    n_g: vec3<f32>,
+    /// Unit shading normal, on the same side.
+    n_s: vec3<f32>,
+    /// Whether the ray came from the front.
+    front: bool,
+    /// How far a ray's origin is moved off the surface, metres.
+    offset: f32,
+}
+
+/// Relative rounding error of a position that a barycentric interpolation gives, with room to spare.
+const OFFSET_PER_METRE: f32 = 1.9073486e-6;
+
+fn largest(v: vec3<f32>) -> f32 {
+    return max(abs(v.x), max(abs(v.y), abs(v.z)));
+}
+
+fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
+    let triangle = triangles[hit.triangle];
+    let b = hit.barycentric;
+    let position = triangle.corner + b.x * triangle.edge_1 + b.y * triangle.edge_2;
+    let outward = normalize(cross(triangle.edge_1, triangle.edge_2));
+    let front = dot(direction, outward) < 0.0;
+    let n_g = select(-outward, outward, front);
+    var n_s = n_g;
+    if triangle.interpolate_normals != 0u {
+        let c = corners[hit.triangle];
+        let n = normalize((1.0 - b.x - b.y) * c.normal_0 + b.x * c.normal_1 + b.y * c.normal_2);
+        n_s = select(-n, n, front);
+        if dot(direction, n_s) >= 0.0 {
+            n_s = n_g;
+        }
+    }
+    let extent = max(largest(triangle.corner), max(largest(triangle.edge_1), largest(triangle.edge_2)));
+    return SurfacePoint(position, n_g, n_s, front, OFFSET_PER_METRE * extent);
+}
+
+/// The origin of a ray that leaves the surface along `direction`, off the surface on that side.
+fn leave(point: SurfacePoint, direction: vec3<f32>) -> vec3<f32> {
+    let side = select(-point.offset, point.offset, dot(direction, point.n_g) > 0.0);
+    return point.position + side * point.n_g;
+}

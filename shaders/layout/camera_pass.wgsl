@@ -1,0 +1,57 @@
+// Bind groups 1 and 2 of the camera pass.
+
+/// One dispatch of the camera pass: one sample of every pixel.
+struct CameraParams {
+    /// Centre of the lens, metres, world frame.
+    position: vec3<f32>,
+    /// Radius of the lens, metres.
+    aperture_radius: f32,
+    /// From the centre of the picture to its right edge, at distance 1.
+    half_right: vec3<f32>,
+    /// Distance at which the picture is sharp, metres.
+    focus_distance: f32,
+    /// From the centre of the picture to its upper edge, at distance 1.
+    half_up: vec3<f32>,
+    /// Index of the sample.
+    sample_index: u32,
+    /// Unit direction of view.
+    forward: vec3<f32>,
+    /// Seed of the camera pass.
+    seed: u32,
+    /// Radiance beyond every object, W/(m² sr).
+    background: vec3<f32>,
+    /// The most surfaces that a path meets before it is cut off.
+    max_depth: u32,
+    /// Ambient radiance of the Phong model, W/(m² sr).
+    ambient: vec3<f32>,
+    /// Lights in the scene.
+    light_count: u32,
+    /// The lens axis that is to the right in the picture, unit length, world frame.
+    lens_right: vec3<f32>,
+    /// Width of the picture, pixels.
+    width: u32,
+    /// The lens axis that is up in the picture, unit length, world frame.
+    lens_up: vec3<f32>,
+    /// Height of the picture, pixels.
+    height: u32,
+    /// The inverse cumulative distribution of the pixel filter at 64 even steps from 0 to 1, pixels from the centre.
+    filter_inverse_cdf: array<vec4<f32>, 16>,
+}
+
+/// What the camera pass accumulates.
+struct Film {
+    /// Rays traced, low and high word.
+    rays_low: atomic<u32>,
+    rays_high: atomic<u32>,
+    /// Invocations that an adapter's loop limit cut short: any makes the result worthless.
+    unfinished: atomic<u32>,
+    /// Unused.
+    padding: u32,
+    /// For each pixel, row by row from the top left: the sum of its samples' radiance, W/(m² sr), and their number.
+    pixels: array<vec4<f32>>,
+}
+
+@group(1) @binding(0) var<uniform> camera_params: CameraParams;
+/// Irradiance of each texel, W/m²; the last component is unused.
+@group(2) @binding(0) var<storage, read> irradiance: array<vec4<f32>>;
+@group(2) @binding(1) var<storage, read_write> film: Film;

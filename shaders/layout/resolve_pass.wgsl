@@ -1,0 +1,21 @@
+// The bindings of the pass that turns the fixed-point sums into irradiance.
+
+/// One dispatch of the resolve pass.
+struct ResolveParams {
+    /// Watts in a unit of the sums, divided by the photons emitted.
+    watts_per_unit: f32,
+    /// Texels in all maps.
+    texel_count: u32,
+    /// Workgroups along x.
+    groups_x: u32,
+    /// Unused.
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> resolve_params: ResolveParams;
+/// Signed 64-bit sums of flux, low and high word: for each texel and channel.
+@group(0) @binding(1) var<storage, read> energy_sums: array<u32>;
+/// Area of each texel, m².
+@group(0) @binding(2) var<storage, read> texel_areas: array<f32>;
+/// Irradiance of each texel, W/m²; the last component is unused.
+@group(0) @binding(3) var<storage, read_write> resolved_irradiance: array<vec4<f32>>;

@@ -1,0 +1,316 @@
+//! Rust twins of the structs in `shaders/layout/`. `tests/layout.rs` compares every name, offset, size and doc line.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A field of a struct that both sides know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedField {
+    /// Its name on both sides.
+    pub name: &'static str,
+    /// Its documentation on both sides, one entry a line.
+    pub docs: &'static [&'static str],
+    /// Bytes from the struct's start.
+    pub offset: usize,
+    /// Bytes.
+    pub size: usize,
+}
+
+/// A struct that both sides know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SharedStruct {
+    /// Its name on both sides.
+    pub name: &'static str,
+    /// Bytes.
+    pub size: usize,
+    /// Its fields, in order.
+    pub fields: &'static [SharedField],
+}
+
+macro_rules! shared_structs {
+    ($($(#[doc = $doc:literal])+ struct $name:ident { $($(#[doc = $field_doc:literal])+ $field:ident: $kind:ty,)+ })+) => {
+        $(
+            $(#[doc = $doc])+
+            #[repr(C)]
+            #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+            pub struct $name {
+                $($(#[doc = $field_doc])+ pub $field: $kind,)+
+            }
+        )+
+        /// Every struct that both sides know.
+        pub const SHARED_STRUCTS: &[SharedStruct] = &[$(SharedStruct {
+            name: stringify!($name),
+            size: size_of::<$name>(),
+            fields: &[$(SharedField {
+                name: stringify!($field),
+                docs: &[$($field_doc),+],
+                offset: std::mem::offset_of!($name, $field),
+                size: size_of::<$kind>(),
+            }),+],
+        }),+];
+    };
+}
+
+shared_structs! {
+    /// A node of the eight-wide compressed BVH (Ylitie, Karras and Laine 2017), as obvhs lays it out.
+    struct BvhNode {
+        /// Origin of the node's grid, metres (bits of three f32); then three grid exponents and the mask of inner children, 8 bits each.
+        grid: [u32; 4],
+        /// First child node, first triangle, and eight 8-bit child descriptions.
+        children: [u32; 4],
+        /// Lower, then upper grid planes of the eight children along x, 8 bits each.
+        planes_x: [u32; 4],
+        /// The same along y.
+        planes_y: [u32; 4],
+        /// The same along z.
+        planes_z: [u32; 4],
+    }
+    /// A triangle, world frame, in the order of the BVH's leaves.
+    struct Triangle {
+        /// First corner, metres.
+        corner: [f32; 3],
+        /// Index of its object.
+        object: u32,
+        /// Second corner minus the first, metres.
+        edge_1: [f32; 3],
+        /// Index of its material.
+        material: u32,
+        /// Third corner minus the first, metres.
+        edge_2: [f32; 3],
+        /// 1 if the corners' normals are interpolated, 0 for a flat facet.
+        interpolate_normals: u32,
+    }
+    /// What a triangle's corners carry, in the order of the triangles.
+    struct TriangleCorners {
+        /// Unit normal at the first corner, world frame.
+        normal_0: [f32; 3],
+        /// Texel column of the third corner.
+        texel_x_2: f32,
+        /// Unit normal at the second corner, world frame.
+        normal_1: [f32; 3],
+        /// Texel row of the third corner.
+        texel_y_2: f32,
+        /// Unit normal at the third corner, world frame.
+        normal_2: [f32; 3],
+        /// Unused.
+        padding: u32,
+        /// Texel column and row of the first corner, then of the second.
+        texel_01: [f32; 4],
+    }
+    /// An object's place in the energy maps.
+    struct Object {
+        /// Index of its map's first texel.
+        map_first_texel: u32,
+        /// Texels along x; 0 for an object without a map.
+        map_width: u32,
+        /// Texels along y.
+        map_height: u32,
+        /// 1, or 2 where front and back are kept apart.
+        map_layers: u32,
+    }
+    /// What a surface does to light. Which fields count depends on `kind`.
+    struct Material {
+        /// Diffuse albedo, Phong's diffuse share or a mirror's reflectance.
+        reflectance: [f32; 3],
+        /// One of the MATERIAL_ constants.
+        kind: u32,
+        /// Factor on light that crosses a dielectric's boundary.
+        tint: [f32; 3],
+        /// Index of refraction.
+        ior: f32,
+        /// Absorption coefficient of a dielectric's interior, 1/m.
+        absorption: [f32; 3],
+        /// Exponent of Phong's specular lobe.
+        shininess: f32,
+        /// Phong's specular share.
+        specular: [f32; 3],
+        /// Unused.
+        padding_0: u32,
+        /// Phong's factor on ambient light.
+        ambient: [f32; 3],
+        /// Unused.
+        padding_1: u32,
+    }
+    /// A spherical emitter.
+    struct SphereLight {
+        /// Centre, metres, world frame.
+        center: [f32; 3],
+        /// Radius, metres; 0 marks the filler of an empty list.
+        radius: f32,
+        /// Radiance, W/(m² sr).
+        radiance: [f32; 3],
+        /// Probability with which the camera pass chooses a light up to and including this one.
+        cumulative_probability: f32,
+    }
+    /// A disc that every ray from a light to some casters crosses.
+    struct AimDisc {
+        /// Centre, metres, world frame.
+        center: [f32; 3],
+        /// Radius, metres.
+        radius: f32,
+        /// Unit normal, pointing away from the light.
+        axis: [f32; 3],
+        /// Unused.
+        padding: u32,
+    }
+    /// One dispatch of the photon pass: an aligned block of one light's photons.
+    struct PhotonParams {
+        /// Index of the light.
+        light: u32,
+        /// Index of the block's first photon; a multiple of the block's length where that is a power of two.
+        first_photon: u32,
+        /// Photons in the block.
+        photon_count: u32,
+        /// Invocations of the dispatch that take photons; each takes every `lane_count`-th.
+        lane_count: u32,
+        /// Seed of the light's random numbers.
+        seed: u32,
+        /// The most surfaces that a photon meets before it is cut off.
+        max_depth: u32,
+        /// Aim discs in use; 0 for light emitted in every direction.
+        aim_disc_count: u32,
+        /// 1 if `order` applies.
+        ordered: u32,
+        /// Units of the fixed-point sums in a watt.
+        units_per_watt: f32,
+        /// Factor on every photon's flux: 1 / (the light's share of all photons).
+        flux_factor: f32,
+        /// Unused.
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+        /// Flux Φ of the light, W.
+        flux: [f32; 3],
+        /// Unused.
+        padding_2: u32,
+        /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
+        /// at neighbouring points.
+        order: [[u32; 4]; 8],
+        /// The light's aim discs.
+        aim_discs: [AimDisc; MAX_AIM_DISCS as usize],
+    }
+    /// One dispatch of the camera pass: one sample of every pixel.
+    struct CameraParams {
+        /// Centre of the lens, metres, world frame.
+        position: [f32; 3],
+        /// Radius of the lens, metres.
+        aperture_radius: f32,
+        /// From the centre of the picture to its right edge, at distance 1.
+        half_right: [f32; 3],
+        /// Distance at which the picture is sharp, metres.
+        focus_distance: f32,
+        /// From the centre of the picture to its upper edge, at distance 1.
+        half_up: [f32; 3],
+        /// Index of the sample.
+        sample_index: u32,
+        /// Unit direction of view.
+        forward: [f32; 3],
+        /// Seed of the camera pass.
+        seed: u32,
+        /// Radiance beyond every object, W/(m² sr).
+        background: [f32; 3],
+        /// The most surfaces that a path meets before it is cut off.
+        max_depth: u32,
+        /// Ambient radiance of the Phong model, W/(m² sr).
+        ambient: [f32; 3],
+        /// Lights in the scene.
+        light_count: u32,
+        /// The lens axis that is to the right in the picture, unit length, world frame.
+        lens_right: [f32; 3],
+        /// Width of the picture, pixels.
+        width: u32,
+        /// The lens axis that is up in the picture, unit length, world frame.
+        lens_up: [f32; 3],
+        /// Height of the picture, pixels.
+        height: u32,
+        /// The inverse cumulative distribution of the pixel filter at 64 even steps from 0 to 1, pixels from the centre.
+        filter_inverse_cdf: [[f32; 4]; 16],
+    }
+    /// One dispatch of the resolve pass.
+    struct ResolveParams {
+        /// Watts in a unit of the sums, divided by the photons emitted.
+        watts_per_unit: f32,
+        /// Texels in all maps.
+        texel_count: u32,
+        /// Workgroups along x.
+        groups_x: u32,
+        /// Unused.
+        padding: u32,
+    }
+    /// How the film is shown.
+    struct DisplayParams {
+        /// Factor on radiance.
+        exposure: f32,
+        /// 1 for the filmic curve, 0 for none.
+        filmic: u32,
+        /// 1 if the shader encodes sRGB, 0 if the target does.
+        encode_srgb: u32,
+        /// Width of the film, pixels.
+        width: u32,
+        /// Height of the film, pixels.
+        height: u32,
+        /// Unused.
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+        /// Unused.
+        padding_2: u32,
+    }
+}
+
+/// Marks the absence of an index.
+pub const NONE: u32 = u32::MAX;
+/// The most aim discs that a light has.
+pub const MAX_AIM_DISCS: u32 = 16;
+/// Entries of the traversal stack: the deepest BVH that the kernels follow.
+pub const STACK_SIZE: u32 = 24;
+
+/// Values of [`Material::kind`].
+pub mod material_kind {
+    /// Lambertian.
+    pub const DIFFUSE: u32 = 0;
+    /// The 2016 paper's local model.
+    pub const PHONG: u32 = 1;
+    /// Perfect mirror.
+    pub const MIRROR: u32 = 2;
+    /// Smooth dielectric.
+    pub const DIELECTRIC: u32 = 3;
+}
+
+/// Accounts of a light's ledger, in the order of the kernel's sums.
+pub mod ledger {
+    /// Flux that left the light.
+    pub const EMITTED: u32 = 0;
+    /// Flux in energy maps.
+    pub const DEPOSITED: u32 = 1;
+    /// Flux that met a receiver before any caster.
+    pub const DIRECT: u32 = 2;
+    /// Flux lost to tints, media, mirrors and lights.
+    pub const ABSORBED: u32 = 3;
+    /// Flux that left the scene.
+    pub const ESCAPED: u32 = 4;
+    /// Flux of paths that grew too long.
+    pub const CUT_OFF: u32 = 5;
+    /// Flux taken (negative: given) by interpolated normals.
+    pub const SHADING_NORMALS: u32 = 6;
+    /// Accounts in a ledger.
+    pub const ACCOUNTS: u32 = 7;
+}
+
+/// Constants that both sides know: name in WGSL, value.
+pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
+    ("NONE", NONE),
+    ("MAX_AIM_DISCS", MAX_AIM_DISCS),
+    ("STACK_SIZE", STACK_SIZE),
+    ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
+    ("MATERIAL_PHONG", material_kind::PHONG),
+    ("MATERIAL_MIRROR", material_kind::MIRROR),
+    ("MATERIAL_DIELECTRIC", material_kind::DIELECTRIC),
+    ("LEDGER_EMITTED", ledger::EMITTED),
+    ("LEDGER_DEPOSITED", ledger::DEPOSITED),
+    ("LEDGER_DIRECT", ledger::DIRECT),
+    ("LEDGER_ABSORBED", ledger::ABSORBED),
+    ("LEDGER_ESCAPED", ledger::ESCAPED),
+    ("LEDGER_CUT_OFF", ledger::CUT_OFF),
+    ("LEDGER_SHADING_NORMALS", ledger::SHADING_NORMALS),
+    ("LEDGER_ACCOUNTS", ledger::ACCOUNTS),
+];

@@ -1,0 +1,52 @@
+//! The WGSL compute kernels of diacaustic and the structs they share with Rust.
+//!
+//! The kernels live beside this crate's manifest, one file per pass, and import the modules in the folders there. The build
+//! script links and validates them; [`KERNELS`] holds the results.
+
+mod layout;
+
+pub use layout::{
+    AimDisc, BvhNode, CameraParams, DisplayParams, Material, Object, PhotonParams, ResolveParams, SHARED_CONSTANTS,
+    SHARED_STRUCTS, SharedField, SharedStruct, SphereLight, Triangle, TriangleCorners,
+    ledger, material_kind, MAX_AIM_DISCS, NONE, STACK_SIZE,
+};
+
+/// A linked kernel.
+#[derive(Clone, Copy, Debug)]
+pub struct Kernel {
+    /// Its file's name without ending.
+    pub name: &'static str,
+    /// WGSL source.
+    pub source: &'static str,
+    /// Its compute entry point; none for a render pass.
+    pub entry_point: Option<&'static str>,
+}
+
+macro_rules! kernel {
+    ($name:literal, $entry_point:expr) => {
+        Kernel {
+            name: $name,
+            source: include_str!(concat!(env!("OUT_DIR"), "/", $name, ".wgsl")),
+            entry_point: $entry_point,
+        }
+    };
+}
+
+/// Phase 1: photons from the lights into the energy maps.
+pub const PHOTONS: Kernel = kernel!("photons", Some("emit_photons"));
+/// Phase 2: one sample of every pixel.
+pub const CAMERA: Kernel = kernel!("camera", Some("sample_pixels"));
+/// Between the phases: fixed-point flux to irradiance.
+pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
+/// Shows the film on a texture: `cover_target` and `show_pixel`.
+pub const DISPLAY: Kernel = kernel!("display", None);
+/// Counts loop iterations, to find adapters that cut loops short.
+pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
+
+/// Every kernel.
+pub const KERNELS: [Kernel; 5] = [PHOTONS, CAMERA, RESOLVE, DISPLAY, LOOP_CHECK];
+
+/// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
+pub const WORKGROUP_SIZE: u32 = 64;
+/// Width and height of a camera workgroup's tile, pixels.
+pub const TILE_SIZE: u32 = 8;
