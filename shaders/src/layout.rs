@@ -236,6 +236,28 @@ shared_structs! {
         /// Unused.
         padding: u32,
     }
+    /// A ray asked about.
+    struct QueryRay {
+        /// Origin, metres, world frame.
+        origin: [f32; 3],
+        /// How far it goes, metres.
+        t_max: f32,
+        /// Unit direction.
+        direction: [f32; 3],
+        /// 1 if any triangle will do, 0 for the nearest.
+        any_hit: u32,
+    }
+    /// What a ray met.
+    struct QueryHit {
+        /// Index of the triangle in the order of the hierarchy's leaves, or NONE.
+        triangle: u32,
+        /// Distance along the ray, metres.
+        t: f32,
+        /// Barycentric weight of the second corner.
+        barycentric_1: f32,
+        /// Barycentric weight of the third corner.
+        barycentric_2: f32,
+    }
     /// How the film is shown.
     struct DisplayParams {
         /// Factor on radiance.

@@ -6,7 +6,7 @@
 mod layout;
 
 pub use layout::{
-    AimDisc, BvhNode, CameraParams, DisplayParams, Material, Object, PhotonParams, ResolveParams, SHARED_CONSTANTS,
+    AimDisc, BvhNode, CameraParams, DisplayParams, Material, Object, PhotonParams, QueryHit, QueryRay, ResolveParams, SHARED_CONSTANTS,
     SHARED_STRUCTS, SharedField, SharedStruct, SphereLight, Triangle, TriangleCorners,
     ledger, material_kind, MAX_AIM_DISCS, NONE, STACK_SIZE,
 };
@@ -40,11 +40,13 @@ pub const CAMERA: Kernel = kernel!("camera", Some("sample_pixels"));
 pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
 /// Shows the film on a texture: `cover_target` and `show_pixel`.
 pub const DISPLAY: Kernel = kernel!("display", None);
+/// Answers ray queries.
+pub const INTERSECT: Kernel = kernel!("intersect", Some("intersect_rays"));
 /// Counts loop iterations, to find adapters that cut loops short.
 pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
 
 /// Every kernel.
-pub const KERNELS: [Kernel; 5] = [PHOTONS, CAMERA, RESOLVE, DISPLAY, LOOP_CHECK];
+pub const KERNELS: [Kernel; 6] = [PHOTONS, CAMERA, RESOLVE, DISPLAY, INTERSECT, LOOP_CHECK];
 
 /// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
 pub const WORKGROUP_SIZE: u32 = 64;

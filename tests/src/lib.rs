@@ -1,1 +1,9 @@
-//! What the tests share.
+//! What the tests share: a device, scenes from text, renders, and comparisons.
+
+mod comparison;
+mod render;
+mod shared_files;
+
+pub use comparison::{Comparison, compare_pictures, mean};
+pub use render::{emit, gpu, render, renderer, scene};
+pub use shared_files::{Layers, read_exr, repository, shared_file};

@@ -1,1 +1,79 @@
-//! x
+//! The command line of diacaustic: reads a scene, renders it, writes pictures, energy maps and statistics.
+//!
+//! A library so that tests reach its parts; the binary `diacaustic` only calls [`main`].
+
+mod arguments;
+mod chunks;
+mod error;
+mod outputs;
+mod progress;
+mod report;
+mod run;
+mod warnings;
+
+use std::{
+    error::Error as _,
+    ffi::OsString,
+    io::{self, Write as _},
+    process::ExitCode,
+};
+
+use clap::Parser as _;
+
+pub use arguments::Arguments;
+pub use error::Error;
+pub use run::run;
+
+/// Runs the command with the arguments of a process, the program's name first, and reports errors on the standard error.
+///
+/// The exit status is 0 when everything is written, 2 when the arguments or the scene are wrong, and 1 when the device or
+/// a file fails. Blocks until then.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(message) => return show_usage(&message),
+    };
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            show_error(&error);
+            ExitCode::from(error.exit_status())
+        }
+    }
+}
+
+/// Shows what the argument parser has to say: help or the version, or what is wrong with the arguments.
+fn show_usage(message: &clap::Error) -> ExitCode {
+    // Nobody is left to hear of a closed pipe, here and below.
+    let _ = if message.use_stderr() {
+        write!(io::stderr(), "diacaustic: {}", message.render())
+    } else {
+        write!(io::stdout(), "{}", message.render())
+    };
+    ExitCode::from(message.exit_code() as u8)
+}
+
+/// One line for the error and one for each that caused it.
+fn show_error(error: &Error) {
+    let _ = writeln!(io::stderr(), "diacaustic: error: {}", one_line(error));
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        let _ = writeln!(io::stderr(), "diacaustic: caused by: {}", one_line(error));
+        cause = error.source();
+    }
+}
+
+/// A message without its line breaks.
+fn one_line(message: &(impl ToString + ?Sized)) -> String {
+    message.to_string().split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_stay_on_one_line() {
+        assert_eq!(one_line("a\n  b\r\n\tc "), "a b c");
+    }
+}

@@ -48,7 +48,8 @@ impl EnergyMapFolder {
     /// # Errors
     /// If the texels are not as many as one or two layers of the map have, or the file cannot be written.
     pub fn write(&mut self, object: &str, map: &Irradiance<'_>) -> Result<PathBuf, Error> {
-        let path = self.path.join(self.file_name(object));
+        let file_name = self.file_name(object);
+        let path = self.path.join(file_name);
         let layer = |pixels| Picture { width: map.width, height: map.height, pixels };
         let texels_in_layer = map.width as usize * map.height as usize;
         let (front, back) = map.texels.split_at(texels_in_layer.min(map.texels.len()));

@@ -45,7 +45,10 @@ fn channels(prefix: &str, pixels: &[[f32; 3]]) -> [AnyChannel<FlatSamples>; 3] {
     ["R", "G", "B"].map(|name| {
         let samples = pixels.iter().map(|pixel| pixel[index]).collect();
         index += 1;
-        AnyChannel::new(format!("{prefix}{name}").as_str(), FlatSamples::F32(samples))
+        AnyChannel {
+            quantize_linearly: false,
+            ..AnyChannel::new(format!("{prefix}{name}").as_str(), FlatSamples::F32(samples))
+        }
     })
 }
 

@@ -9,7 +9,10 @@ use std::{
 use crate::Error;
 
 /// Writes a file beside its place and moves it there once it is complete and on the disk.
-pub(crate) fn replace<E>(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>) -> Result<(), Error>
+pub(crate) fn replace<E>(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>,
+) -> Result<(), Error>
 where
     E: Into<Box<dyn std::error::Error + Send + Sync>>,
 {

@@ -114,7 +114,7 @@ impl Gpu {
     pub fn compute_pipeline(&self, kernel: Kernel, groups: &[&wgpu::BindGroupLayout]) -> wgpu::ComputePipeline {
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.name),
-            source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
+            source: wgpu::ShaderSource::Wgsl(std::env::var(format!("WGSL_{}", kernel.name)).ok().map(|p| std::fs::read_to_string(p).unwrap().into()).unwrap_or(kernel.source.into())),
         });
         let layouts: Vec<_> = groups.iter().map(|layout| Some(*layout)).collect();
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

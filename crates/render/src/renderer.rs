@@ -3,6 +3,7 @@
 use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::Scene;
+use diacaustic_shaders::QueryHit;
 use diacaustic_surface::{Bvh, MapLayout, caster_bounds, world_triangles};
 
 use crate::{
@@ -12,6 +13,7 @@ use crate::{
     energy_map::{EnergyMaps, ResolvePass, place_maps},
     gpu::Gpu,
     photon_pass::{PhotonPass, Photons},
+    ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
 };
 
@@ -36,6 +38,7 @@ pub struct Renderer {
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
     display_pass: DisplayPass,
+    query_pass: QueryPass,
     scene: Option<OnDevice>,
 }
 
@@ -43,6 +46,8 @@ pub struct Renderer {
 #[derive(Debug)]
 struct OnDevice {
     scene: Scene,
+    /// Object and triangle of each triangle on the device.
+    origins: Vec<(u32, u32)>,
     buffers: SceneBuffers,
     maps: EnergyMaps,
     photons: Photons,
@@ -76,6 +81,7 @@ impl Renderer {
                 resolve_pass: ResolvePass::new(&gpu),
                 camera_pass: CameraPass::new(&gpu, &scene_layout),
                 display_pass: DisplayPass::new(&gpu),
+                query_pass: QueryPass::new(&gpu, &scene_layout),
                 gpu: gpu.clone(),
                 options: options.clone(),
                 loop_limit,
@@ -109,6 +115,7 @@ impl Renderer {
                 photons: Photons::new(&self.gpu, &self.photon_pass, scene, &casters, &maps, per_invocation)?,
                 samples: Samples::new(&self.gpu, &self.camera_pass, scene, &maps)?,
                 scene: scene.clone(),
+                origins: bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
                 buffers,
                 maps,
                 photon_count: 0,
@@ -216,6 +223,39 @@ impl Renderer {
             camera_rays: on_device.samples.rays(&self.gpu)?,
             ledgers: counts.ledgers,
         })
+    }
+
+    /// The nearest triangle along each ray, or with `any_hit` any; none where there is none. Blocks.
+    ///
+    /// # Errors
+    /// If no scene is set, the rays do not fit into a buffer (65,535 × 64 at most), or the device fails.
+    pub fn intersect(&self, rays: &[Ray], any_hit: bool) -> Result<Vec<Option<RayHit>>, Error> {
+        let batch = self.upload_rays(rays, any_hit)?;
+        self.trace_rays(&batch)?;
+        let origins = &self.scene.as_ref().ok_or(Error::NoScene)?.origins;
+        let hit = |found: QueryHit| {
+            let (object, triangle) = *origins.get(found.triangle as usize)?;
+            Some(RayHit { object: object as usize, triangle: triangle as usize, t: found.t })
+        };
+        Ok(batch.read(&self.gpu)?.into_iter().map(hit).collect())
+    }
+
+    /// Uploads rays to be traced, once or often, by [`Renderer::trace_rays`].
+    ///
+    /// # Errors
+    /// If the rays do not fit into a buffer.
+    pub fn upload_rays(&self, rays: &[Ray], any_hit: bool) -> Result<RayBatch, Error> {
+        self.gpu.guarded(|| self.query_pass.upload(&self.gpu, rays, any_hit))
+    }
+
+    /// Submits the tracing of uploaded rays.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn trace_rays(&self, batch: &RayBatch) -> Result<(), Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        self.query_pass.run(&self.gpu, &on_device.buffers.bind_group, batch);
+        Ok(())
     }
 
     /// Forgets all photons and samples; the scene stays.

@@ -1,0 +1,117 @@
+//! Work for the device in pieces, between which progress shows and a time limit can end it.
+
+use std::{
+    ops::Range,
+    time::{Duration, Instant},
+};
+
+/// A chunk that takes less makes the next one longer, so that waiting for the device costs little.
+const SHORT_CHUNK: Duration = Duration::from_millis(50);
+/// Photons in the first chunk, as a power of two: about as many as the renderer takes in one dispatch.
+const FIRST_PHOTONS: u32 = 18;
+/// How many times as long as the first a chunk may become.
+const GROWTH: u64 = 64;
+
+/// Calls `work` with pieces of 0..`total`, the first of `first` numbers, until all are done or the next piece would probably
+/// end after the deadline; at least once if there are any. Returns how many are done.
+pub(crate) fn in_chunks<E>(
+    total: u64,
+    first: u64,
+    deadline: Option<Instant>,
+    mut work: impl FnMut(Range<u64>) -> Result<(), E>,
+) -> Result<u64, E> {
+    let mut chunk = first;
+    let mut done = 0;
+    while done < total {
+        let end = total.min(done.saturating_add(chunk));
+        let start = Instant::now();
+        work(done..end)?;
+        let now = Instant::now();
+        done = end;
+        if deadline.is_some_and(|deadline| now + (now - start) > deadline) {
+            break;
+        }
+        if now - start < SHORT_CHUNK && chunk < first.saturating_mul(GROWTH) {
+            chunk *= 2;
+        }
+    }
+    Ok(done)
+}
+
+/// How many photons to emit when `asked` are asked for of `emitters` lights that take turns: equally many from each.
+pub(crate) fn rounded_photons(asked: u64, emitters: u64) -> u64 {
+    asked.next_multiple_of(emitters.max(1))
+}
+
+/// Photons in the first chunk: the same power of two from each light.
+pub(crate) fn first_photons(emitters: u64) -> u64 {
+    let emitters = emitters.max(1);
+    emitters << FIRST_PHOTONS.saturating_sub(emitters.ilog2())
+}
+
+/// When photons must stop: they take at most half of the time that is left.
+pub(crate) fn photon_deadline(now: Instant, deadline: Instant) -> Instant {
+    now + deadline.saturating_duration_since(now) / 2
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{convert::Infallible, thread::sleep};
+
+    use super::*;
+
+    #[test]
+    fn chunks_cover_everything_once_and_grow() {
+        let mut pieces = Vec::new();
+        let done = in_chunks(1000, 3, None, |piece| {
+            pieces.push(piece);
+            Ok::<_, Infallible>(())
+        });
+        assert_eq!(done, Ok(1000));
+        assert_eq!(pieces[..3], [0..3, 3..9, 9..21]);
+        assert!(pieces.windows(2).all(|pair| pair[0].end == pair[1].start));
+        assert!(pieces.iter().all(|piece| piece.end - piece.start <= 3 * GROWTH));
+        assert_eq!(pieces.last().unwrap().end, 1000);
+    }
+
+    #[test]
+    fn a_deadline_stops_after_one_chunk_at_least() {
+        let count = |deadline, pause| {
+            in_chunks(1000, 1, Some(deadline), |_| {
+                sleep(pause);
+                Ok::<_, Infallible>(())
+            })
+        };
+        assert_eq!(count(Instant::now(), Duration::ZERO), Ok(1));
+        // The second chunk would end at 120 ms.
+        assert_eq!(count(Instant::now() + Duration::from_millis(100), Duration::from_millis(60)), Ok(1));
+        assert_eq!(count(Instant::now() + Duration::from_secs(3600), Duration::ZERO), Ok(1000));
+    }
+
+    #[test]
+    fn an_error_ends_the_work() {
+        assert_eq!(in_chunks(10, 1, None, |piece| if piece.start == 0 { Ok(()) } else { Err("no") }), Err("no"));
+        assert_eq!(in_chunks(0, 1, None, |_| Err("never called")), Ok(0));
+    }
+
+    #[test]
+    fn every_light_sends_equally_many_photons() {
+        assert_eq!(
+            [1, 2, 3, 0].map(|emitters| rounded_photons(1_000_000, emitters)),
+            [1_000_000, 1_000_000, 1_000_002, 1_000_000]
+        );
+        assert_eq!(rounded_photons(0, 5), 0);
+        for emitters in 1..100 {
+            let first = first_photons(emitters);
+            assert!(first.is_multiple_of(emitters) && (first / emitters).is_power_of_two());
+            assert!(first <= 2 << FIRST_PHOTONS);
+        }
+    }
+
+    #[test]
+    fn photons_leave_half_of_the_time() {
+        let now = Instant::now();
+        assert_eq!(photon_deadline(now, now + Duration::from_secs(10)), now + Duration::from_secs(5));
+        assert_eq!(photon_deadline(now, now), now);
+    }
+}

@@ -1,0 +1,51 @@
+//! What can go wrong.
+
+use std::path::PathBuf;
+
+/// Why the command did not do what it was asked to.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] diacaustic::scene::Error),
+    /// The scene cannot be rendered, or the device failed.
+    #[error(transparent)]
+    Render(#[from] diacaustic::Error),
+    /// There is no device, or it failed.
+    #[error(transparent)]
+    Device(#[from] diacaustic_headless::Error),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Output(#[from] diacaustic_output::Error),
+    /// One file would be written over another.
+    #[error("{}: named twice; name a file of its own for each output, and not the scene", .0.display())]
+    NamedTwice(PathBuf),
+}
+
+impl Error {
+    /// The exit status that tells what is at fault: 2, the arguments or the scene; 1, the device or a file.
+    pub fn exit_status(&self) -> u8 {
+        use diacaustic::Error as Render;
+        match self {
+            Self::Scene(_) | Self::NamedTwice(_) => 2,
+            Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
+            Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
+            Self::Render(_) | Self::Device(_) | Self::Output(_) => 1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_exit_status_tells_what_is_at_fault() {
+        let scene = diacaustic::scene::load_scene(std::path::Path::new("missing.toml")).unwrap_err();
+        assert_eq!(Error::from(scene).exit_status(), 2);
+        assert_eq!(Error::from(diacaustic_output::Error::UnknownEnding("a".into())).exit_status(), 2);
+        assert_eq!(Error::from(diacaustic_output::Error::IsFolder("a".into())).exit_status(), 1);
+        assert_eq!(Error::from(diacaustic::Error::OutOfMemory(String::new())).exit_status(), 1);
+    }
+}

@@ -1,0 +1,152 @@
+//! The content of the statistics file.
+
+use std::time::Duration;
+
+use diacaustic::{Ledger, MapSize, SceneReport, Statistics, scene::Light, scene::Scene, wgpu::AdapterInfo};
+use diacaustic_output as output;
+
+use crate::progress::rate;
+
+/// Wall-clock time of each stage but those that the renderer measures.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Times {
+    pub load: Duration,
+    pub device: Duration,
+    pub kernels: Duration,
+    /// The hierarchy, the maps and the upload together.
+    pub scene: Duration,
+    pub photons: Duration,
+    pub samples: Duration,
+    pub write: Duration,
+    pub total: Duration,
+}
+
+/// Everything that a statistics file tells.
+pub(crate) struct Report<'r> {
+    pub scene_file: String,
+    pub scene: &'r Scene,
+    pub adapter: &'r AdapterInfo,
+    pub built: &'r SceneReport,
+    pub counted: &'r Statistics,
+    pub times: Times,
+    pub time_limit_reached: bool,
+}
+
+impl Report<'_> {
+    pub fn statistics(&self) -> output::Statistics {
+        let lights = self.scene.lights.iter().zip(&self.counted.ledgers);
+        output::Statistics {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: self.scene_file.clone(),
+            seed: self.scene.settings.seed,
+            time_limit_reached: self.time_limit_reached,
+            adapter: adapter(self.adapter),
+            size: self.size(),
+            seconds: self.seconds(),
+            photons: self.photons(),
+            camera: self.camera(),
+            maps: self.built.maps.iter().map(|map| self.map(map)).collect(),
+            lights: lights.map(|(light, ledger)| light_ledger(light, ledger, self.counted.photons)).collect(),
+        }
+    }
+
+    fn size(&self) -> output::SceneSize {
+        output::SceneSize {
+            width: self.scene.settings.width,
+            height: self.scene.settings.height,
+            triangles: self.built.triangles as u64,
+            bvh_nodes: self.built.bvh_nodes as u64,
+            device_bytes: self.built.device_bytes,
+        }
+    }
+
+    fn seconds(&self) -> output::Seconds {
+        let times = self.times;
+        let upload = times.scene.saturating_sub(self.built.bvh_time + self.built.maps_time);
+        output::Seconds {
+            load: times.load.as_secs_f64(),
+            device: times.device.as_secs_f64(),
+            kernels: times.kernels.as_secs_f64(),
+            bvh: self.built.bvh_time.as_secs_f64(),
+            maps: self.built.maps_time.as_secs_f64(),
+            upload: upload.as_secs_f64(),
+            photons: times.photons.as_secs_f64(),
+            samples: times.samples.as_secs_f64(),
+            write: times.write.as_secs_f64(),
+            total: times.total.as_secs_f64(),
+        }
+    }
+
+    fn photons(&self) -> output::Photons {
+        let (counted, time) = (self.counted, self.times.photons);
+        output::Photons {
+            emitted: counted.photons,
+            deposits: counted.deposits,
+            rays: counted.photon_rays,
+            photons_per_second: rate(counted.photons, time),
+            rays_per_second: rate(counted.photon_rays, time),
+        }
+    }
+
+    fn camera(&self) -> output::CameraRays {
+        let (counted, time) = (self.counted, self.times.samples);
+        let pixels = u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height);
+        output::CameraRays {
+            samples: counted.samples,
+            rays: counted.camera_rays,
+            samples_per_second: rate(pixels * u64::from(counted.samples), time),
+            rays_per_second: rate(counted.camera_rays, time),
+        }
+    }
+
+    fn map(&self, map: &MapSize) -> output::Map {
+        let object = self.scene.objects[map.object].name.clone();
+        output::Map { object, width: map.width, height: map.height, layers: map.layers }
+    }
+}
+
+fn adapter(info: &AdapterInfo) -> output::Adapter {
+    output::Adapter {
+        name: info.name.clone(),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        backend: info.backend.to_str().to_owned(),
+    }
+}
+
+fn light_ledger(light: &Light, ledger: &Ledger, photons: u64) -> output::LightLedger {
+    let watts = |account| ledger.watts(account, photons).to_array();
+    output::LightLedger {
+        name: light.name.clone(),
+        flux: light.kind.flux().as_dvec3().to_array(),
+        emitted: watts(ledger.emitted),
+        deposited: watts(ledger.deposited),
+        direct: watts(ledger.direct),
+        absorbed: watts(ledger.absorbed),
+        escaped: watts(ledger.escaped),
+        cut_off: watts(ledger.cut_off),
+        shading_normals: watts(ledger.shading_normals),
+        residue: ledger.residue(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use diacaustic::scene::LightKind;
+
+    use super::*;
+
+    #[test]
+    fn ledgers_are_in_watts() {
+        let kind = LightKind::Sphere { center: [0.0; 3].into(), radius: 1.0, flux: [8.0, 4.0, 2.0].into() };
+        let ledger = Ledger {
+            emitted: [400, 200, 100],
+            deposited: [300, 200, 100],
+            direct: [100, 0, 1],
+            units_per_watt: 10.0,
+            ..Ledger::default()
+        };
+        let told = light_ledger(&Light { name: "lamp".into(), kind }, &ledger, 10);
+        assert_eq!((told.flux, told.emitted), ([8.0, 4.0, 2.0], [4.0, 2.0, 1.0]));
+        assert_eq!((told.deposited, told.direct, told.residue), ([3.0, 2.0, 1.0], [1.0, 0.0, 0.01], [0, 0, -1]));
+    }
+}
