@@ -5,10 +5,11 @@ import package::bsdf::phong::receiver_bsdf;
 import package::bsdf::specular::scatter_specular;
 import package::emitter::sphere::{nearest_light, sample_sphere_cone};
 import package::film::texels::footprint;
+import package::geometry::records::load_triangle;
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{camera_params, film, irradiance};
-import package::layout::scene::{lights, materials, triangles, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_PHONG, NONE};
+import package::layout::scene::{lights, materials, Triangle, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_PHONG, NONE};
 import package::medium::absorption::transmittance;
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
@@ -131,8 +132,9 @@ fn aim_at_light(path: ptr<function, Path>, point: SurfacePoint, material: u32) {
 }
 
 /// Shades a receiver: ambient light, the caustics in its map, and one light's point, which the next ray tests.
-fn meet_receiver(path: ptr<function, Path>, hit: Hit, point: SurfacePoint, material: u32) {
-    let place = footprint(hit, point.front);
+fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point: SurfacePoint) {
+    let material = triangle.material;
+    let place = footprint(hit, triangle.object, point.front);
     let caustic = place.weights.x * irradiance[place.texels.x].xyz + place.weights.y * irradiance[place.texels.y].xyz
         + place.weights.z * irradiance[place.texels.z].xyz + place.weights.w * irradiance[place.texels.w].xyz;
     (*path).radiance += (*path).beta * materials[material].reflectance / PI * caustic;
@@ -146,15 +148,16 @@ fn meet_receiver(path: ptr<function, Path>, hit: Hit, point: SurfacePoint, mater
 
 /// Lets a path meet the triangle at `hit`; returns whether another ray follows.
 fn meet_surface(path: ptr<function, Path>, hit: Hit) -> bool {
-    let point = surface_point(hit, (*path).direction);
-    let material = triangles[hit.triangle].material;
+    let triangle = load_triangle(hit.triangle);
+    let point = surface_point(hit, triangle, (*path).direction);
+    let material = triangle.material;
     let kind = materials[material].kind;
     if kind == MATERIAL_MIRROR || kind == MATERIAL_DIELECTRIC {
         meet_caster(path, point, material);
         (*path).depth += 1u;
         return (*path).depth < camera_params.max_depth;
     }
-    meet_receiver(path, hit, point, material);
+    meet_receiver(path, hit, triangle, point);
     return (*path).is_shadow_ray;
 }
 

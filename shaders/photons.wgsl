@@ -5,13 +5,14 @@ import package::emitter::emission::emit;
 import package::emitter::sphere::nearest_light;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
+import package::geometry::records::load_triangle;
 import package::geometry::surface::{leave, surface_point};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
     energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS,
 };
-import package::layout::scene::{materials, triangles, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, NONE};
+import package::layout::scene::{materials, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, NONE};
 import package::medium::absorption::transmittance;
 import package::sampling::sobol::{padded_1, sobol_5};
 
@@ -84,8 +85,8 @@ fn next_choice(photon: ptr<function, Photon>) -> f32 {
 }
 
 /// Adds flux to the four texels around a hit; their integers sum to `units` exactly.
-fn deposit(hit: Hit, front: bool, units: vec3<i32>) {
-    let place = footprint(hit, front);
+fn deposit(hit: Hit, object: u32, front: bool, units: vec3<i32>) {
+    let place = footprint(hit, object, front);
     for (var channel = 0u; channel < 3u; channel++) {
         let total = units[channel];
         var shares = vec4<i32>(round(f32(total) * place.weights));
@@ -107,8 +108,9 @@ fn deposit(hit: Hit, front: bool, units: vec3<i32>) {
 /// Lets a photon meet the surface at `hit`; returns whether its path goes on.
 fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
-    let point = surface_point(hit, d);
-    let material = triangles[hit.triangle].material;
+    let triangle = load_triangle(hit.triangle);
+    let point = surface_point(hit, triangle, d);
+    let material = triangle.material;
     let kind = materials[material].kind;
     if kind != MATERIAL_MIRROR && kind != MATERIAL_DIELECTRIC {
         // Light that met no caster belongs to the camera pass.
@@ -116,7 +118,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
             accounts[LEDGER_DIRECT] += (*photon).units;
         } else {
             accounts[LEDGER_DEPOSITED] += (*photon).units;
-            deposit(hit, point.front, (*photon).units);
+            deposit(hit, triangle.object, point.front, (*photon).units);
         }
         return false;
     }

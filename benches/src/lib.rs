@@ -1,1 +1,39 @@
-//! 
+//! What the benchmarks share: scenes.
+
+use diacaustic::scene::Scene;
+use diacaustic_tests::scene;
+
+/// A glass teapot on a plaster floor 4 m wide, whose map has `map_size` × `map_size` texels, in a picture of 64 × 64 pixels.
+pub fn teapot(map_size: u32) -> Scene {
+    teapots(&[[0.0, 0.0, 0.0]], map_size)
+}
+
+/// Two glass teapots side by side on the floor of [`teapot`]: 97,206 triangles.
+pub fn two_teapots(map_size: u32) -> Scene {
+    teapots(&[[-0.55, 0.0, 0.0], [0.55, 0.0, 0.2]], map_size)
+}
+
+/// The floor's index among the objects of a scene of this crate: the last.
+pub fn floor(scene: &Scene) -> usize {
+    scene.objects.len() - 1
+}
+
+fn teapots(places: &[[f32; 3]], map_size: u32) -> Scene {
+    let teapots: String = places
+        .iter()
+        .map(|place| {
+            format!("{{ mesh = \"assets/meshes/teapot.obj\", material = \"glass\", translate = {place:?} }},\n")
+        })
+        .collect();
+    scene(&format!(
+        "camera = {{ position = [0, 1.4, 2.2], look_at = [0, 0.2, 0], vertical_fov = 40 }}
+         render = {{ width = 64, height = 64, map_size = {map_size} }}
+         materials.glass = {{ type = \"dielectric\", ior = 1.5 }}
+         materials.floor = {{ type = \"diffuse\", albedo = 0.8 }}
+         lights = [{{ type = \"sphere\", center = [1.0, 2.5, 0.6], radius = 0.05, flux = 35 }}]
+         objects = [
+             {teapots}
+             {{ rectangle = {{ center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }}, material = \"floor\" }},
+         ]"
+    ))
+}

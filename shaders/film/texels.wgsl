@@ -1,7 +1,8 @@
 // Places in an object's energy map; docs/photon-paths.md, "Deposit".
 
+import package::geometry::records::load_corners;
 import package::geometry::traverse::Hit;
-import package::layout::scene::{corners, objects, triangles};
+import package::layout::scene::objects;
 
 /// The four texels around a point of a surface and their bilinear weights.
 struct Footprint {
@@ -11,9 +12,9 @@ struct Footprint {
     weights: vec4<f32>,
 }
 
-fn footprint(hit: Hit, front: bool) -> Footprint {
-    let c = corners[hit.triangle];
-    let object = objects[triangles[hit.triangle].object];
+fn footprint(hit: Hit, object_index: u32, front: bool) -> Footprint {
+    let c = load_corners(hit.triangle);
+    let object = objects[object_index];
     let b = hit.barycentric;
     let at = (1.0 - b.x - b.y) * c.texel_01.xy + b.x * c.texel_01.zw + b.y * vec2<f32>(c.texel_x_2, c.texel_y_2);
     let last = vec2<f32>(f32(object.map_width - 2u), f32(object.map_height - 2u));

@@ -1,7 +1,8 @@
 // The surface at a hit.
 
+import package::geometry::records::load_corners;
 import package::geometry::traverse::Hit;
-import package::layout::scene::{corners, triangles};
+import package::layout::scene::Triangle;
 
 /// A point on a surface, seen along a ray.
 struct SurfacePoint {
@@ -24,8 +25,7 @@ fn largest(v: vec3<f32>) -> f32 {
     return max(abs(v.x), max(abs(v.y), abs(v.z)));
 }
 
-fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
-    let triangle = triangles[hit.triangle];
+fn surface_point(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> SurfacePoint {
     let b = hit.barycentric;
     let position = triangle.corner + b.x * triangle.edge_1 + b.y * triangle.edge_2;
     let outward = normalize(cross(triangle.edge_1, triangle.edge_2));
@@ -33,7 +33,7 @@ fn surface_point(hit: Hit, direction: vec3<f32>) -> SurfacePoint {
     let n_g = select(-outward, outward, front);
     var n_s = n_g;
     if triangle.interpolate_normals != 0u {
-        let c = corners[hit.triangle];
+        let c = load_corners(hit.triangle);
         let n = normalize((1.0 - b.x - b.y) * c.normal_0 + b.x * c.normal_1 + b.y * c.normal_2);
         n_s = select(-n, n, front);
         if dot(direction, n_s) >= 0.0 {

@@ -1,11 +1,15 @@
 // Rays against the scene's triangles: eight-wide compressed BVH (Ylitie, Karras and Laine 2017).
 
-import package::layout::scene::{nodes, triangles, BvhNode, NONE};
+import package::geometry::records::{load_node, load_triangle};
+import package::layout::scene::{BvhNode, NONE};
 
 /// Entries of the traversal stack; the host refuses a deeper tree.
 const STACK_SIZE: u32 = 24u;
 /// Bits of a group that stand for inner children still to visit.
 const INNER_BITS: u32 = 0xff000000u;
+
+/// Groups to come back to. Not local to `trace`, where it would be cleared for every ray.
+var<private> stack: array<vec2<u32>, STACK_SIZE>;
 
 /// The nearest triangle along a ray.
 struct Hit {
@@ -82,15 +86,14 @@ fn meet_children(node: BvhNode, ray: BoxRay, t_max: f32) -> u32 {
 
 /// A triangle against a ray (Möller and Trumbore 1997); `nearest` if it is missed or farther.
 fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, nearest: Hit) -> Hit {
-    let edge_1 = triangles[index].edge_1;
-    let edge_2 = triangles[index].edge_2;
-    let p = cross(direction, edge_2);
-    let inverse = 1.0 / dot(edge_1, p);
-    let s = origin - triangles[index].corner;
+    let triangle = load_triangle(index);
+    let p = cross(direction, triangle.edge_2);
+    let inverse = 1.0 / dot(triangle.edge_1, p);
+    let s = origin - triangle.corner;
     let u = dot(s, p) * inverse;
-    let q = cross(s, edge_1);
+    let q = cross(s, triangle.edge_1);
     let v = dot(direction, q) * inverse;
-    let t = dot(edge_2, q) * inverse;
+    let t = dot(triangle.edge_2, q) * inverse;
     if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < nearest.t {
         return Hit(index, t, vec2<f32>(u, v));
     }
@@ -101,7 +104,6 @@ fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, nearest: H
 fn trace(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> Hit {
     let ray = box_ray(origin, direction);
     var hit = Hit(NONE, t_max, vec2<f32>(0.0));
-    var stack: array<vec2<u32>, STACK_SIZE>;
     var depth = 0u;
     // Inner children to visit (first child, hit bits and inner mask), and triangles to test (first triangle, hit bits).
     var group = vec2<u32>(0u, 0x80000000u);
@@ -117,7 +119,7 @@ fn trace(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> 
                 stack[depth] = group;
                 depth += 1u;
             }
-            let node = nodes[child];
+            let node = load_node(child);
             let met = meet_children(node, ray, hit.t);
             group = vec2<u32>(node.children.x, (met & INNER_BITS) | (node.grid.w >> 24u));
             leaves = vec2<u32>(node.children.y, met & ~INNER_BITS);

@@ -104,9 +104,16 @@ const MATERIAL_DIELECTRIC: u32 = 3u;
 /// Marks the absence of an index.
 const NONE: u32 = 0xffffffffu;
 
-@group(0) @binding(0) var<storage, read> nodes: array<BvhNode>;
-@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
-@group(0) @binding(2) var<storage, read> corners: array<TriangleCorners>;
+/// Width of the textures that hold geometry, texels, as a power of two. Record after record of 16-byte texels, row by row:
+/// software adapters read texels far faster than storage buffers, and a texture may be larger than a storage binding.
+const GEOMETRY_WIDTH_BITS: u32 = 13u;
+
+/// BvhNode records of 5 texels.
+@group(0) @binding(0) var nodes: texture_2d<u32>;
+/// Triangle records of 3 texels, floating-point numbers as their bits.
+@group(0) @binding(1) var triangles: texture_2d<u32>;
+/// TriangleCorners records of 4 texels, floating-point numbers as their bits.
+@group(0) @binding(2) var corners: texture_2d<u32>;
 @group(0) @binding(3) var<storage, read> objects: array<Object>;
 @group(0) @binding(4) var<storage, read> materials: array<Material>;
 @group(0) @binding(5) var<storage, read> lights: array<SphereLight>;

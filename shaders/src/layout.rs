@@ -283,6 +283,8 @@ shared_structs! {
 pub const NONE: u32 = u32::MAX;
 /// The most aim discs that a light has.
 pub const MAX_AIM_DISCS: u32 = 16;
+/// Width of the textures that hold geometry, texels, as a power of two.
+pub const GEOMETRY_WIDTH_BITS: u32 = 13;
 /// Entries of the traversal stack: the deepest BVH that the kernels follow.
 pub const STACK_SIZE: u32 = 24;
 
@@ -323,6 +325,7 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
     ("MAX_AIM_DISCS", MAX_AIM_DISCS),
     ("STACK_SIZE", STACK_SIZE),
+    ("GEOMETRY_WIDTH_BITS", GEOMETRY_WIDTH_BITS),
     ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
     ("MATERIAL_PHONG", material_kind::PHONG),
     ("MATERIAL_MIRROR", material_kind::MIRROR),

@@ -8,7 +8,7 @@ mod layout;
 pub use layout::{
     AimDisc, BvhNode, CameraParams, DisplayParams, Material, Object, PhotonParams, QueryHit, QueryRay, ResolveParams, SHARED_CONSTANTS,
     SHARED_STRUCTS, SharedField, SharedStruct, SphereLight, Triangle, TriangleCorners,
-    ledger, material_kind, MAX_AIM_DISCS, NONE, STACK_SIZE,
+    ledger, material_kind, GEOMETRY_WIDTH_BITS, MAX_AIM_DISCS, NONE, STACK_SIZE,
 };
 
 /// A linked kernel.

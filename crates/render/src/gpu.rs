@@ -1,7 +1,7 @@
 //! Buffers, pipelines and read-back on the application's device.
 
 use bytemuck::Pod;
-use diacaustic_shaders::Kernel;
+use diacaustic_shaders::{GEOMETRY_WIDTH_BITS, Kernel};
 use wgpu::util::DeviceExt as _;
 
 use crate::Error;
@@ -19,6 +19,8 @@ pub(crate) enum Binding {
     Uniform,
     Read,
     ReadWrite,
+    /// A texture of unsigned integers, read texel by texel.
+    Texels,
 }
 
 /// What a buffer is for, and what to do if it does not fit.
@@ -85,15 +87,7 @@ impl Gpu {
             .map(|(number, binding)| wgpu::BindGroupLayoutEntry {
                 binding: number as u32,
                 visibility: stages,
-                ty: wgpu::BindingType::Buffer {
-                    ty: match binding {
-                        Binding::Uniform => wgpu::BufferBindingType::Uniform,
-                        Binding::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                        Binding::ReadWrite => wgpu::BufferBindingType::Storage { read_only: false },
-                    },
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
+                ty: binding_type(*binding),
                 count: None,
             })
             .collect();
@@ -102,19 +96,80 @@ impl Gpu {
 
     /// A bind group of whole buffers, in order.
     pub fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
-        let entries: Vec<_> = buffers
-            .iter()
+        let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
+        self.bind_resources(layout, resources)
+    }
+
+    /// A bind group of any resources, in order.
+    pub fn bind_resources(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: Vec<wgpu::BindingResource>,
+    ) -> wgpu::BindGroup {
+        let entries: Vec<_> = resources
+            .into_iter()
             .enumerate()
-            .map(|(number, buffer)| wgpu::BindGroupEntry { binding: number as u32, resource: buffer.as_entire_binding() })
+            .map(|(number, resource)| wgpu::BindGroupEntry { binding: number as u32, resource })
             .collect();
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// A texture of 16-byte texels that holds `records` one after the other, row by row.
+    pub fn records<T: Pod>(&self, purpose: Purpose, records: &[T]) -> Result<wgpu::Texture, Error> {
+        let bytes: &[u8] = bytemuck::cast_slice(records);
+        let row = 16usize << GEOMETRY_WIDTH_BITS;
+        let height = bytes.len().div_ceil(row).max(1);
+        let limit = u64::from(self.device.limits().max_texture_dimension_2d);
+        if height as u64 > limit {
+            let (asked, available) = (bytes.len() as u64, limit * row as u64);
+            return Err(Error::BufferTooLarge { what: purpose.what, asked, available, remedy: purpose.remedy });
+        }
+        let size = wgpu::Extent3d { width: 1 << GEOMETRY_WIDTH_BITS, height: height as u32, depth_or_array_layers: 1 };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(purpose.what),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let (whole_rows, rest) = bytes.split_at(bytes.len() / row * row);
+        self.write_rows(&texture, 0, whole_rows);
+        if !rest.is_empty() {
+            let mut last = rest.to_vec();
+            last.resize(row, 0);
+            self.write_rows(&texture, (whole_rows.len() / row) as u32, &last);
+        }
+        Ok(texture)
+    }
+
+    /// Writes whole rows of a texture of records.
+    fn write_rows(&self, texture: &wgpu::Texture, first_row: u32, bytes: &[u8]) {
+        let row = 16u32 << GEOMETRY_WIDTH_BITS;
+        let height = bytes.len() as u32 / row;
+        if height == 0 {
+            return;
+        }
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 0, y: first_row, z: 0 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytes,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+            wgpu::Extent3d { width: 1 << GEOMETRY_WIDTH_BITS, height, depth_or_array_layers: 1 },
+        );
     }
 
     /// The pipeline of a compute kernel; `groups` are its bind groups' layouts, in order.
     pub fn compute_pipeline(&self, kernel: Kernel, groups: &[&wgpu::BindGroupLayout]) -> wgpu::ComputePipeline {
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.name),
-            source: wgpu::ShaderSource::Wgsl(std::env::var(format!("WGSL_{}", kernel.name)).ok().map(|p| std::fs::read_to_string(p).unwrap().into()).unwrap_or(kernel.source.into())),
+            source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
         });
         let layouts: Vec<_> = groups.iter().map(|layout| Some(*layout)).collect();
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -215,5 +270,19 @@ impl Gpu {
             return Err(Error::Device(error.to_string()));
         }
         result
+    }
+}
+
+fn binding_type(binding: Binding) -> wgpu::BindingType {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    match binding {
+        Binding::Uniform => buffer(wgpu::BufferBindingType::Uniform),
+        Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        Binding::ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        Binding::Texels => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Uint,
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
     }
 }

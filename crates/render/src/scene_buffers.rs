@@ -13,7 +13,8 @@ use crate::{
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 6] = [Binding::Read; 6];
+pub(crate) const BINDINGS: [Binding; 6] =
+    [Binding::Texels, Binding::Texels, Binding::Texels, Binding::Read, Binding::Read, Binding::Read];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -42,16 +43,25 @@ impl SceneBuffers {
         let corners: Vec<_> = bvh.triangles.iter().map(|t| triangle_corners(t, &maps[t.object as usize])).collect();
         let objects: Vec<_> = maps.iter().map(object).collect();
         let materials: Vec<_> = scene.materials.iter().map(|m| material(&m.kind)).collect();
+        let textures = [
+            gpu.records(NODES, nodes)?,
+            gpu.records(TRIANGLES, &triangles)?,
+            gpu.records(CORNERS, &corners)?,
+        ];
         let buffers = [
-            gpu.filled(NODES, nodes)?,
-            gpu.filled(TRIANGLES, &triangles)?,
-            gpu.filled(CORNERS, &corners)?,
             gpu.filled(OBJECTS, &objects)?,
             gpu.filled(MATERIALS, &materials)?,
             gpu.filled(LIGHTS, &lights(scene))?,
         ];
-        let bytes = buffers.iter().map(wgpu::Buffer::size).sum();
-        Ok(Self { bind_group: gpu.bind(layout, &buffers.each_ref()), bytes })
+        let texture_bytes = |t: &wgpu::Texture| 16 * u64::from(t.width()) * u64::from(t.height());
+        let bytes = textures.iter().map(texture_bytes).sum::<u64>() + buffers.iter().map(wgpu::Buffer::size).sum::<u64>();
+        let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let resources = views
+            .iter()
+            .map(wgpu::BindingResource::TextureView)
+            .chain(buffers.iter().map(wgpu::Buffer::as_entire_binding))
+            .collect();
+        Ok(Self { bind_group: gpu.bind_resources(layout, resources), bytes })
     }
 }
 

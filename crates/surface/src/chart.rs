@@ -73,7 +73,8 @@ const OVERLAP_GRID: usize = 512;
 pub fn uvs_overlap(mesh: &Mesh) -> bool {
     let (low, high) = bounds(&mesh.uvs);
     let extent = high - low;
-    if !(extent.min_element() > 0.0) {
+    let covers_plane = extent.min_element() > 0.0;
+    if !covers_plane {
         return true;
     }
     let mut covers = vec![0u8; OVERLAP_GRID * OVERLAP_GRID];

@@ -1,0 +1,410 @@
+//! Runs the real binary: what it writes, what it says, and the exit status it leaves.
+
+use std::{fs, path::PathBuf, process::Command};
+
+use diacaustic_tests::{Layers, read_exr};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A glass ball over a floor, small enough to render at once.
+const BALL: &str = r#"
+    camera = { position = [0, 1.5, 2.5], look_at = [0, 0.3, 0], vertical_fov = 40 }
+    render = { width = 64, height = 64, samples = 2, photons = 20_000, map_size = 32 }
+
+    [materials]
+    glass = { type = "dielectric", ior = 1.5 }
+    plaster = { type = "diffuse", albedo = 0.8 }
+
+    [[lights]]
+    name = "lamp"
+    type = "sphere"
+    center = [0.5, 2.5, 0.3]
+    radius = 0.05
+    flux = 35
+
+    [[objects]]
+    name = "ball"
+    sphere = { center = [0, 0.4, 0], radius = 0.3, subdivisions = 5 }
+    material = "glass"
+
+    [[objects]]
+    name = "floor"
+    rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }
+    material = "plaster"
+"#;
+
+/// The glass in [`BALL`].
+const BALL_SHAPE: &str = "sphere = { center = [0, 0.4, 0], radius = 0.3, subdivisions = 5 }";
+/// The receiver in [`BALL`].
+const FLOOR_SHAPE: &str = "rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }";
+
+/// A folder of one test, with the scene file `scene.toml`, in which the command runs.
+struct Workplace(TempDir);
+
+/// What a run of the command left.
+#[derive(Debug)]
+struct Outcome {
+    status: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+impl Workplace {
+    fn new(scene: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_diacaustic"));
+        command.current_dir(self.0.path()).args(arguments);
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Outcome {
+        outcome(&mut self.command(arguments))
+    }
+
+    /// Runs the command where there is no adapter.
+    fn run_without_adapter(&self, arguments: &[&str]) -> Outcome {
+        let mut command = self.command(arguments);
+        command.env("WGPU_BACKEND", "vulkan");
+        for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            command.env(variable, "/nonexistent");
+        }
+        outcome(&mut command)
+    }
+
+    /// Renders `scene.toml` with further arguments, which must succeed.
+    fn render(&self, arguments: &[&str]) -> Outcome {
+        let outcome = self.run(&[&["scene.toml"], arguments].concat());
+        assert_eq!(outcome.status, Some(0), "{arguments:?}: {}", outcome.stderr);
+        assert_eq!(outcome.stdout, "", "{arguments:?}: the standard output is the user's");
+        outcome
+    }
+
+    fn exr(&self, name: &str) -> Layers {
+        read_exr(&self.path(name))
+    }
+
+    fn json(&self, name: &str) -> Value {
+        serde_json::from_slice(&fs::read(self.path(name)).unwrap()).unwrap()
+    }
+
+    /// The names of the files in the folder, sorted.
+    fn files(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Outcome {
+    /// Checks the exit status, that each text stands in what was said, and that nobody need read a panic.
+    #[track_caller]
+    fn assert_refused(&self, status: i32, texts: &[&str]) {
+        assert_eq!(self.status, Some(status), "{}", self.stderr);
+        for text in texts {
+            assert!(self.stderr.contains(text), "{text:?} is missing in: {}", self.stderr);
+        }
+        assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+    }
+
+    fn warnings(&self) -> Vec<&str> {
+        self.stderr.lines().filter_map(|line| line.strip_prefix("diacaustic: warning: ")).collect()
+    }
+}
+
+fn outcome(command: &mut Command) -> Outcome {
+    let output = command.output().unwrap();
+    Outcome {
+        status: output.status.code(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// Checks that the channels are those named, and all values finite, non-negative and not all black.
+#[track_caller]
+fn assert_lit(layers: &Layers, names: &[&str]) {
+    assert!(layers.channels.keys().eq(names), "{:?}", layers.channels.keys());
+    assert!(layers.channels.values().flatten().all(|value| value.is_finite() && *value >= 0.0));
+    assert!(layers.channels.values().flatten().any(|value| *value > 0.01), "everything is black");
+}
+
+#[test]
+fn writes_pictures_in_both_formats() {
+    let workplace = Workplace::new(BALL);
+    let outcome = workplace.render(&["--output", "a.exr", "-o", "a.PNG"]);
+    let exr = workplace.exr("a.exr");
+    assert_eq!((exr.width, exr.height), (64, 64));
+    assert_lit(&exr, &["B", "G", "R"]);
+    let png =
+        image::ImageReader::open(workplace.path("a.PNG")).unwrap().with_guessed_format().unwrap().decode().unwrap();
+    assert_eq!((png.width(), png.height(), png.color()), (64, 64, image::ColorType::Rgb8));
+    let brightest = png.as_bytes().iter().max().unwrap();
+    assert!(*brightest > 100, "the brightest byte is {brightest}");
+    assert_eq!(workplace.files(), ["a.PNG", "a.exr", "scene.toml"]);
+    assert_eq!(outcome.warnings(), [""; 0]);
+    let last = outcome.stderr.lines().last().unwrap();
+    assert!(last.starts_with("wrote a.exr, a.PNG in "), "{last}");
+}
+
+#[test]
+fn without_output_the_scene_chooses_the_files() {
+    let workplace = Workplace::new(BALL);
+    workplace.render(&[]);
+    assert_eq!(workplace.files(), ["scene.png", "scene.toml"]);
+    fs::write(workplace.path("named.toml"), format!("output = {{ files = [\"b.exr\", \"b.png\"] }}\n{BALL}")).unwrap();
+    assert_eq!(workplace.run(&["named.toml"]).status, Some(0));
+    assert_eq!(workplace.files(), ["b.exr", "b.png", "named.toml", "scene.png", "scene.toml"]);
+}
+
+#[test]
+fn paths_start_at_the_scene_files_folder() {
+    let workplace = Workplace::new("");
+    fs::create_dir(workplace.path("scenes")).unwrap();
+    let tetrahedron = "v 0 0.7 0\nv -0.3 0.2 0.3\nv 0.3 0.2 0.3\nv 0 0.2 -0.3\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
+    fs::write(workplace.path("scenes/solid.obj"), tetrahedron).unwrap();
+    let scene = BALL.replace(BALL_SHAPE, "mesh = \"solid.obj\"");
+    fs::write(workplace.path("scenes/a.toml"), format!("output = {{ files = [\"a.exr\"] }}\n{scene}")).unwrap();
+    let outcome = workplace.run(&["scenes/a.toml"]);
+    assert_eq!((outcome.status, outcome.warnings().len()), (Some(0), 0), "{}", outcome.stderr);
+    assert_lit(&workplace.exr("scenes/a.exr"), &["B", "G", "R"]);
+}
+
+#[test]
+fn statistics_hold_the_counts_and_a_closed_ledger() {
+    let workplace = Workplace::new(BALL);
+    workplace.render(&["--stats", "stats.json", "--photons", "30_000", "--samples", "3", "--seed", "9"]);
+    let stats = workplace.json("stats.json");
+    assert_eq!((&stats["photons"]["emitted"], &stats["camera"]["samples"]), (&30_000.into(), &3.into()));
+    assert_eq!((&stats["seed"], &stats["time_limit_reached"]), (&9.into(), &false.into()));
+    assert_eq!((&stats["size"]["width"], &stats["size"]["height"]), (&64.into(), &64.into()));
+    let deposits = stats["photons"]["deposits"].as_u64().unwrap();
+    assert!((1..=30_000).contains(&deposits), "{deposits} deposits");
+    assert!(stats["photons"]["rays"].as_u64() > Some(30_000) && stats["camera"]["rays"].as_u64() > Some(3 * 64 * 64));
+    assert_eq!(stats["maps"][0]["object"], "floor");
+    let lamp = &stats["lights"][0];
+    assert_eq!((&lamp["name"], &lamp["residue"]), (&"lamp".into(), &serde_json::json!([0, 0, 0])));
+    let watts = |account: &str| lamp[account][1].as_f64().unwrap();
+    let spent = ["deposited", "direct", "absorbed", "escaped", "cut_off", "shading_normals"].map(watts);
+    assert!(watts("deposited") > 0.0 && watts("emitted") < 35.0, "{lamp}");
+    assert!((spent.iter().sum::<f64>() / watts("emitted") - 1.0).abs() < 1e-9, "{lamp}");
+    for stage in ["load", "device", "kernels", "bvh", "maps", "upload", "photons", "samples", "write"] {
+        let seconds = stats["seconds"][stage].as_f64().unwrap();
+        assert!(seconds >= 0.0 && seconds <= stats["seconds"]["total"].as_f64().unwrap(), "{stage}: {seconds} s");
+    }
+    assert!(!stats["adapter"]["name"].as_str().unwrap().is_empty());
+}
+
+#[test]
+fn energy_maps_are_finite_irradiance_of_each_receiver() {
+    let workplace = Workplace::new(BALL);
+    workplace.render(&["--energy-maps", "new/maps"]);
+    let names: Vec<_> = fs::read_dir(workplace.path("new/maps")).unwrap().map(|f| f.unwrap().file_name()).collect();
+    assert_eq!(names, ["floor.exr"]);
+    let map = workplace.exr("new/maps/floor.exr");
+    assert_eq!((map.width, map.height), (32, 32));
+    assert_lit(&map, &["B", "G", "R", "back.B", "back.G", "back.R"]);
+    assert!(map.channels["back.G"].iter().all(|value| *value == 0.0), "light reached the floor from below");
+}
+
+#[test]
+fn equal_runs_are_equal_to_the_byte_and_other_seeds_are_not() {
+    let workplace = Workplace::new(BALL);
+    let bytes = |name: &str, seed: &str| {
+        let (picture, maps) = (format!("{name}.exr"), format!("{name} maps"));
+        workplace.render(&["--output", &picture, "--energy-maps", &maps, "--seed", seed]);
+        [picture, format!("{maps}/floor.exr")].map(|file| fs::read(workplace.path(&file)).unwrap())
+    };
+    let first = bytes("first", "1");
+    assert!(first == bytes("second", "1"), "two runs with seed 1 differ");
+    let [picture, map] = bytes("third", "2");
+    assert!(picture != first[0] && map != first[1], "seeds 1 and 2 give the same bytes");
+}
+
+#[test]
+fn quiet_prints_nothing_but_errors() {
+    let workplace = Workplace::new(&BALL.replace("dielectric\", ior = 1.5", "diffuse\", albedo = 0.5"));
+    assert_eq!(workplace.render(&["--quiet"]).stderr, "");
+    assert!(!workplace.render(&[]).warnings().is_empty(), "the scene has nothing to be quiet about");
+    let refused = workplace.run(&["missing.toml", "--quiet"]);
+    assert_eq!(refused.stderr.lines().count(), 1, "{}", refused.stderr);
+}
+
+#[test]
+fn wrong_scenes_exit_with_2_and_name_file_and_key() {
+    let cases: [(&str, &str, &[&str]); 6] = [
+        ("ior = 1.5", "ior = = 1.5", &["scene.toml:6:", "not valid TOML"]),
+        ("ior", "iro", &["scene.toml:6:", "[materials.glass]", "unknown key \"iro\"", "did you mean \"ior\"?"]),
+        ("flux = 35", "flux = nan", &["scene.toml:14:", "[[lights]] #1", "flux is nan"]),
+        ("map_size = 32", "map_size = 1", &["scene.toml:3:", "map_size is 1", "from 2 to 8192"]),
+        ("\"plaster\"", "\"plastre\"", &["scene.toml:24:", "\"plastre\"", "did you mean \"plaster\"?"]),
+        (
+            BALL_SHAPE,
+            "mesh = \"meshes/teapott.obj\"",
+            &["scene.toml:18:", "[[objects]] #1 \"ball\"", "meshes/teapott.obj", "cannot be read"],
+        ),
+    ];
+    for (right, wrong, texts) in cases {
+        assert!(BALL.contains(right), "{right:?}");
+        let workplace = Workplace::new(&BALL.replace(right, wrong));
+        workplace.run(&["scene.toml"]).assert_refused(2, texts);
+        assert_eq!(workplace.files(), ["scene.toml"], "{wrong:?} left a file");
+    }
+    let not_text = Workplace::new(BALL);
+    fs::write(not_text.path("scene.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    not_text.run(&["scene.toml"]).assert_refused(2, &["scene.toml", "cannot be read"]);
+}
+
+#[test]
+fn wrong_arguments_exit_with_2_and_name_what_is_wrong() {
+    let workplace = Workplace::new(BALL);
+    let cases: [(&[&str], &[&str]); 7] = [
+        (&[], &["<SCENE>"]),
+        (&["missing.toml"], &["missing.toml", "cannot be read"]),
+        (&["scene.toml", "--photon", "9"], &["--photon", "--photons"]),
+        (&["scene.toml", "--samples", "0"], &["--samples", "from 1 to"]),
+        (&["scene.toml", "--time-limit", "soon"], &["--time-limit", "number of seconds"]),
+        (&["scene.toml", "--output", "a.jpg"], &["a.jpg", ".exr or .png"]),
+        (&["scene.toml", "--output", "a.exr", "--stats", "a.exr"], &["a.exr", "named twice"]),
+    ];
+    for (arguments, texts) in cases {
+        workplace.run(arguments).assert_refused(2, texts);
+    }
+    assert_eq!(workplace.files(), ["scene.toml"]);
+}
+
+#[test]
+fn unwritable_places_exit_with_1_before_rendering() {
+    let workplace = Workplace::new(BALL);
+    workplace
+        .run_without_adapter(&["scene.toml", "--output", "missing/a.png"])
+        .assert_refused(1, &["missing/a.png", "there is no folder missing"]);
+    workplace
+        .run_without_adapter(&["scene.toml", "--energy-maps", "scene.toml"])
+        .assert_refused(1, &["scene.toml: the folder"]);
+    if cfg!(target_os = "linux") {
+        // Not even root creates files there.
+        workplace
+            .run_without_adapter(&["scene.toml", "--output", "/proc/a.png"])
+            .assert_refused(1, &["/proc/a.png: the file cannot be written", "caused by"]);
+    }
+    assert_eq!(workplace.files(), ["scene.toml"]);
+}
+
+#[test]
+fn no_adapter_exits_with_1_and_names_the_packages() {
+    let workplace = Workplace::new(BALL);
+    let outcome = workplace.run_without_adapter(&["scene.toml"]);
+    outcome.assert_refused(1, &["no GPU adapter", "apt-get install libvulkan1 mesa-vulkan-drivers"]);
+    assert_eq!(workplace.files(), ["scene.toml"]);
+}
+
+/// Two receivers with the largest maps there are, 6.4 GB together, of which hardly a texel holds a surface.
+fn too_large_for_any_device() -> Workplace {
+    let workplace = Workplace::new(&BALL.replace("map_size = 32", "map_size = 8192").replace(
+        FLOOR_SHAPE,
+        "mesh = \"specks.obj\"\nmaterial = \"plaster\"\n[[objects]]\nname = \"more\"\nmesh = \"specks.obj\"",
+    ));
+    let specks = "v 0 0 0\nv 0 0 0.01\nv 0.01 0 0\nv 4 0 4\nv 4 0 3.99\nv 3.99 0 4\nf 1 2 3\nf 4 5 6\n";
+    fs::write(workplace.path("specks.obj"), specks).unwrap();
+    workplace
+}
+
+#[test]
+fn a_map_beyond_the_device_exits_with_1_and_names_both_sizes() {
+    let workplace = too_large_for_any_device();
+    let outcome = workplace.run(&["scene.toml"]);
+    let asked = 2 * 2 * 24 * 8192u64.pow(2);
+    outcome
+        .assert_refused(1, &["the energy maps need", &format!("{asked} bytes"), "the device allows", "lower map_size"]);
+    let available = outcome.stderr.split("the device allows ").nth(1).and_then(|rest| rest.split(':').next());
+    let available: u64 = available.unwrap().parse().unwrap();
+    assert!(available >= 128 << 20 && available < asked, "{available} bytes are said to be allowed");
+}
+
+#[test]
+fn a_failing_run_leaves_the_files_of_the_last_one() {
+    let workplace = too_large_for_any_device();
+    for file in ["scene.png", "stats.json"] {
+        fs::write(workplace.path(file), "before").unwrap();
+    }
+    workplace.run(&["scene.toml", "--stats", "stats.json"]).assert_refused(1, &["the energy maps"]);
+    for file in ["scene.png", "stats.json"] {
+        assert_eq!(fs::read_to_string(workplace.path(file)).unwrap(), "before", "{file}");
+    }
+    assert_eq!(workplace.files(), ["scene.png", "scene.toml", "specks.obj", "stats.json"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_exits_with_1_and_leaves_the_files_after_it() {
+    let workplace = Workplace::new(BALL);
+    std::os::unix::fs::symlink("/dev/full", workplace.path("full.png")).unwrap();
+    fs::write(workplace.path("kept.exr"), "before").unwrap();
+    let outcome = workplace.run(&["scene.toml", "--output", "full.png", "--output", "kept.exr"]);
+    outcome.assert_refused(1, &["full.png: the file cannot be written", "caused by", "No space left"]);
+    assert_eq!(fs::read_to_string(workplace.path("kept.exr")).unwrap(), "before");
+    assert_eq!(workplace.files(), ["full.png", "kept.exr", "scene.toml"]);
+}
+
+#[test]
+fn a_time_limit_still_gives_a_picture() {
+    let workplace =
+        Workplace::new(&BALL.replace("samples = 2, photons = 20_000", "samples = 4000, photons = 4_000_000_000"));
+    workplace.render(&["--output", "a.exr", "--stats", "stats.json", "--time-limit", "0.01"]);
+    assert_lit(&workplace.exr("a.exr"), &["B", "G", "R"]);
+    let stats = workplace.json("stats.json");
+    assert_eq!(stats["time_limit_reached"], true);
+    assert!(
+        stats["photons"]["emitted"].as_u64() > Some(0) && stats["photons"]["emitted"].as_u64() < Some(4_000_000_000)
+    );
+    assert_eq!(stats["camera"]["samples"], 1);
+}
+
+/// Renders the scene and checks that there is exactly one warning, with these texts.
+#[track_caller]
+fn assert_warns(workplace: &Workplace, texts: &[&str]) {
+    let outcome = workplace.render(&[]);
+    let [warning] = outcome.warnings().try_into().unwrap_or_else(|found| panic!("not one warning: {found:?}"));
+    for text in texts {
+        assert!(warning.contains(text), "{text:?} is missing in: {warning}");
+    }
+}
+
+#[test]
+fn no_caster_is_told() {
+    let workplace = Workplace::new(&BALL.replace("material = \"glass\"", "material = \"plaster\""));
+    assert_warns(&workplace, &["no caustic can form", "no object has a dielectric or mirror material"]);
+}
+
+#[test]
+fn a_light_inside_glass_is_told() {
+    let workplace = Workplace::new(&BALL.replace("center = [0.5, 2.5, 0.3]", "center = [0, 0.4, 0]"));
+    assert_warns(&workplace, &["light \"lamp\" lies inside the dielectric object \"ball\"", "move the light"]);
+}
+
+#[test]
+fn photons_that_all_miss_are_told_with_their_fate() {
+    // So small and far away that no photon of these finds it.
+    let speck = "rectangle = { center = [0, 90, -90], edge_u = [0.01, 0, 0], edge_v = [0, 0, -0.01] }";
+    let workplace = Workplace::new(&BALL.replace(FLOOR_SHAPE, speck));
+    assert_warns(&workplace, &["no caustic formed: none of 20000 photons", "left the scene"]);
+}
+
+#[test]
+fn an_open_mesh_of_glass_is_told_with_its_open_edges() {
+    let workplace = Workplace::new(&BALL.replace(BALL_SHAPE, "mesh = \"open.obj\""));
+    // A tetrahedron without one of its faces.
+    let open = "v 0 0.7 0\nv -0.3 0.2 0.3\nv 0.3 0.2 0.3\nv 0 0.2 -0.3\nf 1 2 3\nf 1 3 4\nf 1 4 2\n";
+    fs::write(workplace.path("open.obj"), open).unwrap();
+    assert_warns(&workplace, &["object \"ball\"", "not closed (3 open edges)", "close the mesh"]);
+}

@@ -1,0 +1,96 @@
+//! Every scene of `assets/scenes`: sound, and rendered to something.
+
+use std::path::{Path, PathBuf};
+
+use diacaustic::{Film, Renderer};
+use diacaustic_scene::{MaterialKind, Scene, load_scene};
+use diacaustic_tests::{renderer, repository};
+
+/// The scene files, sorted.
+fn scene_files() -> Vec<PathBuf> {
+    let folder = Path::new(repository()).join("assets/scenes");
+    let entries = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "toml"));
+    files.sort();
+    assert!(!files.is_empty(), "{}: there are no scenes", folder.display());
+    files
+}
+
+/// A scene without warnings, and its name.
+fn load(file: &Path) -> (String, Scene) {
+    let loaded = load_scene(file).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.warnings, [], "{}", file.display());
+    (file.display().to_string(), loaded.scene)
+}
+
+/// The scene, small enough to render at once.
+fn reduced(mut scene: Scene) -> Scene {
+    scene.settings.width = 96;
+    scene.settings.height = 96;
+    scene.settings.samples = 4;
+    scene.settings.photons = 60_000;
+    scene
+}
+
+#[test]
+fn the_scenes_that_later_work_relies_on_are_there() {
+    let names: Vec<_> = scene_files().iter().map(|file| file.file_stem().unwrap().to_owned()).collect();
+    for name in ["teapot", "crystal", "ball", "wine-glass"] {
+        assert!(names.iter().any(|found| found == name), "{name}.toml is missing");
+    }
+}
+
+#[test]
+fn glass_is_closed_and_faces_outward() {
+    for file in scene_files() {
+        let (name, scene) = load(&file);
+        let is_glass = |material: &usize| matches!(scene.materials[*material].kind, MaterialKind::Dielectric { .. });
+        let glass: Vec<_> = scene.objects.iter().filter(|object| object.materials.iter().any(is_glass)).collect();
+        assert!(!glass.is_empty(), "{name}: nothing is of glass");
+        for object in glass {
+            let (open, volume) = (object.mesh.open_edges(), object.mesh.signed_volume());
+            assert_eq!(open, 0, "{name}: {:?} has open edges", object.name);
+            assert!(volume > 0.0, "{name}: {:?} encloses {volume} m³", object.name);
+        }
+    }
+}
+
+fn assert_unrendered_is_zero(name: &str, scene: &Scene, renderer: &Renderer) {
+    let film = renderer.film().unwrap();
+    assert!(film.samples == 0 && film.radiance.iter().all(|pixel| *pixel == [0.0; 3]), "{name}: the film began dirty");
+    let mut maps = 0;
+    for object in 0..scene.objects.len() {
+        let Some(map) = renderer.energy_map(object).unwrap() else { continue };
+        maps += 1;
+        assert!(map.photons == 0 && map.sums.iter().all(|sum| *sum == [0; 3]), "{name}: map {object} began dirty");
+    }
+    assert!(maps > 0, "{name}: no object has an energy map");
+}
+
+fn assert_finite_and_lit(name: &str, film: &Film) {
+    assert_eq!((film.width, film.height, film.samples), (96, 96, 4), "{name}");
+    let channels = film.radiance.as_flattened();
+    assert!(
+        channels.iter().all(|value| value.is_finite() && *value >= 0.0),
+        "{name}: a pixel is undefined or negative"
+    );
+    let lit = film.radiance.iter().filter(|pixel| pixel[1] > 1e-3).count();
+    assert!(lit * 10 > film.radiance.len(), "{name}: only {lit} pixels are lit");
+}
+
+#[test]
+fn every_scene_renders_to_a_picture_with_a_caustic() {
+    for file in scene_files() {
+        let (name, scene) = load(&file);
+        let scene = reduced(scene);
+        let mut renderer = renderer(&scene);
+        assert_unrendered_is_zero(&name, &scene, &renderer);
+        renderer.emit_photons(0..scene.settings.photons).unwrap();
+        renderer.add_samples(scene.settings.samples).unwrap();
+        assert_finite_and_lit(&name, &renderer.film().unwrap());
+        let statistics = renderer.statistics().unwrap();
+        assert!(statistics.deposits > 0, "{name}: no photon was deposited");
+        assert!(statistics.ledgers.iter().all(|ledger| ledger.residue() == [0; 3]), "{name}: the ledger is open");
+    }
+}
