@@ -46,8 +46,9 @@ struct Planes {
 
 fn planes(low: u32, high: u32, scale: f32, offset: f32) -> Planes {
     let backward = scale < 0.0;
-    let near = vec4<f32>(unpack4xU8(select(low, high, backward)));
-    let far = vec4<f32>(unpack4xU8(select(high, low, backward)));
+    // Signed, for processors convert signed integers in one instruction.
+    let near = vec4<f32>(vec4<i32>(unpack4xU8(select(low, high, backward))));
+    let far = vec4<f32>(vec4<i32>(unpack4xU8(select(high, low, backward))));
     return Planes(near * scale + offset, far * scale + offset);
 }
 
