@@ -42,6 +42,9 @@ const MAX_UNITS: f32 = 67108864.0;
 /// Per-invocation sums of the ledger, units of the fixed-point sums.
 var<private> accounts: array<vec3<i32>, LEDGER_ACCOUNTS>;
 
+/// Photons that this invocation has deposited.
+var<private> deposits: u32;
+
 fn to_units(beta: vec3<f32>) -> vec3<i32> {
     return vec3<i32>(round(min(beta * photon_params.units_per_watt, vec3<f32>(MAX_UNITS))));
 }
@@ -102,7 +105,7 @@ fn deposit(hit: Hit, object: u32, front: bool, units: vec3<i32>) {
             }
         }
     }
-    atomicAdd(&ledger.deposits, 1u);
+    deposits += 1u;
 }
 
 /// Lets a photon meet the surface at `hit`; returns whether its path goes on.
@@ -157,6 +160,9 @@ fn close_accounts(rays: u32) {
     }
     if atomicAdd(&ledger.rays_low, rays) > 0xffffffffu - rays {
         atomicAdd(&ledger.rays_high, 1u);
+    }
+    if atomicAdd(&ledger.deposits_low, deposits) > 0xffffffffu - deposits {
+        atomicAdd(&ledger.deposits_high, 1u);
     }
 }
 

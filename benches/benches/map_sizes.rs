@@ -1,11 +1,11 @@
-//! Energy maps of 64² to 2048² texels and 2¹⁴ to 2²⁰ photons: how long photons take, and how long their sums take to become
-//! irradiance.
+//! A floor's energy map of 64² to 2048² texels, on both its sides together, and 2¹⁴ to 2²⁰ photons: how long photons take, and
+//! how long their sums take to become irradiance.
 //!
 //! `photons/SIZE/COUNT`: `Renderer::emit_photons(0..COUNT)` and the wait for it, in photons a second. Each pass emits the same
 //! photons again, which adds to the sums and changes no path.
 //!
-//! `resolve/SIZE`: the first sample after new photons, of 64 × 64 pixels, in texels a second: the sums of both sides of the floor
-//! become irradiance, then the picture is sampled once. The smallest maps show what the sample alone takes.
+//! `resolve/SIZE`: the first sample after new photons, of 64 × 64 pixels, in texels a second: the sums become irradiance, then
+//! the picture is sampled once. The smallest maps show what the sample alone takes.
 //!
 //! ```text
 //! cargo bench -p diacaustic-benches --bench map_sizes

@@ -1,7 +1,7 @@
-//! What a scene costs before its first photon: two teapots on a floor (97,208 triangles).
+//! What a scene costs before its first photon: two teapots on a floor (97,206 triangles).
 //!
-//! `bvh`: the hierarchy on every core, in triangles a second. `texel_areas/SIZE`: the areas of the floor's SIZE² texels, in texels
-//! a second. `set_scene`: everything, with a floor of 1024² texels, until the device has it, in triangles a second.
+//! `bvh`: the hierarchy on every core, in triangles a second. `texel_areas/SIZE`: the areas of one side of the floor, SIZE × SIZE / 2
+//! texels, in texels a second. `set_scene`: everything, until the device has it, in triangles a second.
 //!
 //! ```text
 //! cargo bench -p diacaustic-benches --bench scene_setup
@@ -28,7 +28,7 @@ fn scene_setup(criterion: &mut Criterion) {
     let floor = floor(&scene);
     let layout = MapLayout::new(&scene.objects[floor], MAP_SIZE);
     let floor_triangles: Vec<_> = triangles.iter().filter(|t| t.object as usize == floor).copied().collect();
-    group.throughput(Throughput::Elements(u64::from(MAP_SIZE) * u64::from(MAP_SIZE)));
+    group.throughput(Throughput::Elements(u64::from(layout.width) * u64::from(layout.height)));
     group.bench_function(BenchmarkId::new("texel_areas", MAP_SIZE), |bencher| {
         bencher.iter(|| texel_areas(&layout, &floor_triangles));
     });

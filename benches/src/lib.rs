@@ -3,7 +3,8 @@
 use diacaustic::scene::Scene;
 use diacaustic_tests::scene;
 
-/// A glass teapot on a plaster floor 4 m wide, whose map has `map_size` × `map_size` texels, in a picture of 64 × 64 pixels.
+/// A glass teapot on a plaster floor of 4 m × 2 m, in a picture of 64 × 64 pixels. The map of the floor's upper side has `map_size` ×
+/// `map_size` / 2 texels and that of its lower side as many: the largest, of 2048² together, is within 128 MiB.
 pub fn teapot(map_size: u32) -> Scene {
     teapots(&[[0.0, 0.0, 0.0]], map_size)
 }
@@ -33,7 +34,7 @@ fn teapots(places: &[[f32; 3]], map_size: u32) -> Scene {
          lights = [{{ type = \"sphere\", center = [1.0, 2.5, 0.6], radius = 0.05, flux = 35 }}]
          objects = [
              {teapots}
-             {{ rectangle = {{ center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }}, material = \"floor\" }},
+             {{ rectangle = {{ center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -2] }}, material = \"floor\" }},
          ]"
     ))
 }

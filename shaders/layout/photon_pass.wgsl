@@ -69,8 +69,9 @@ struct PhotonLedger {
     rays_high: atomic<u32>,
     /// Invocations that an adapter's loop limit cut short: any makes the result worthless.
     unfinished: atomic<u32>,
-    /// Photons that reached a receiver through a caster.
-    deposits: atomic<u32>,
+    /// Photons that reached a receiver through a caster, low and high word.
+    deposits_low: atomic<u32>,
+    deposits_high: atomic<u32>,
     /// Signed 64-bit sums, low and high word: for each light, account and channel.
     accounts: array<atomic<u32>>,
 }

@@ -9,8 +9,11 @@ fn modules() -> Vec<(&'static str, Module)> {
     KERNELS.iter().map(|kernel| (kernel.name, naga::front::wgsl::parse_str(kernel.source).expect(kernel.name))).collect()
 }
 
-/// (name, offset, size) of each field, then the struct's size.
-fn fields(module: &Module, wanted: &str) -> Option<(Vec<(String, usize, usize)>, usize)> {
+/// A field's name, offset and size.
+type Field = (String, usize, usize);
+
+/// The fields of a struct in WGSL, and its size.
+fn fields(module: &Module, wanted: &str) -> Option<(Vec<Field>, usize)> {
     let (_, found) = module.types.iter().find(|(_, kind)| kind.name.as_deref() == Some(wanted))?;
     let TypeInner::Struct { members, span } = &found.inner else { return None };
     let list = members

@@ -334,3 +334,56 @@ fn ledger_closes_exactly() {
     let emitted: DVec3 = second.watts(second.emitted, photons);
     assert!((emitted.y - 5.0).abs() < 1e-3, "the second light's photons carry {} of its 5 W", emitted.y);
 }
+
+#[test]
+fn plane_mirror_makes_a_virtual_lamp() {
+    // The mirror stands at x = 2, so a lamp at (−30, 40, 0) shines as if from (34, 40, 0).
+    let scene = scene(
+        "camera = { position = [0, 1, 9], look_at = [0, 0, 0], vertical_fov = 40 }
+         render = { map_size = 16 }
+         lights = [{ type = \"sphere\", center = [-30, 40, 0], radius = 0.05, flux = 100_000 }]
+         materials.floor = { type = \"diffuse\", albedo = 0.5 }
+         materials.mirror = { type = \"mirror\", reflectance = [0.9, 0.5, 0] }
+         objects = [
+             { rectangle = { center = [0, 0, 0], edge_u = [1, 0, 0], edge_v = [0, 0, -1] }, material = \"floor\" },
+             { rectangle = { center = [2, 2.4, 0], edge_u = [0, 2.2, 0], edge_v = [0, 0, 1.6] }, material = \"mirror\" },
+         ]",
+    );
+    let map = emit(&scene, 1 << 20).energy_map(0).unwrap().expect("the floor is a receiver");
+    let found: DVec3 = (0..map.sums.len()).map(|texel| map.flux(texel)).sum();
+    let distance2 = 34.0f64 * 34.0 + 40.0 * 40.0;
+    let unmirrored = 100_000.0 / (4.0 * PI) * 40.0 / distance2.powf(1.5);
+    for (found, reflectance) in [(found.x, 0.9), (found.y, 0.5)] {
+        let ratio = found / unmirrored;
+        assert!((ratio / reflectance - 1.0).abs() < 5e-3, "reflected share {ratio}, known {reflectance}");
+    }
+    assert_eq!(found.z, 0.0);
+}
+
+#[test]
+fn thin_lens_blurs_to_its_circle_of_confusion() {
+    // A lamp of radius r at distance d, focus at f, lens of radius a: in the lamp's plane each of its points is a disc of
+    // radius a |f − d|/f. A disc's mean square radius is half its radius squared, and convolution adds the two.
+    let (r, d, f, a) = (0.01, 2.0, 4.0, 0.05);
+    let film = render(&scene(&format!(
+        "camera = {{ position = [0, 0, {d}], look_at = [0, 0, 0], vertical_fov = 4, aperture_radius = {a}, focus_distance = {f} }}
+         render = {{ width = 128, height = 128, samples = 256, photons = 0 }}
+         lights = [{{ type = \"sphere\", center = [0, 0, 0], radius = {r}, flux = 1 }}]
+         materials.floor = {{ type = \"diffuse\", albedo = 0 }}
+         objects = [{{ rectangle = {{ center = [0, -9, 0], edge_u = [1, 0, 0], edge_v = [0, 0, -1] }}, material = \"floor\" }}]"
+    )));
+    let pixel = 2.0 * d * f64::tan(2.0f64.to_radians()) / 128.0;
+    let (mut energy, mut second_moment) = (0.0, 0.0);
+    for (number, value) in film.radiance.iter().enumerate() {
+        let (x, y) = ((number % 128) as f64 - 63.5, (number / 128) as f64 - 63.5);
+        energy += f64::from(value[1]);
+        second_moment += f64::from(value[1]) * (x * x + y * y) * pixel * pixel;
+    }
+    let confusion = a * (f - d) / f;
+    let expected = 0.5 * (confusion * confusion + r * r);
+    let found = second_moment / energy;
+    assert!((found / expected - 1.0).abs() < 0.01, "mean square radius {found} m², known {expected} m²");
+    let radiance = 1.0 / (4.0 * PI * PI * r * r);
+    let brought = energy * pixel * pixel / (radiance * PI * r * r);
+    assert!((brought - 1.0).abs() < 0.01, "the lens brings {brought} of the lamp's light");
+}

@@ -191,7 +191,7 @@ fn along_axes(scene: &Scene, mut at: impl FnMut(&mut Random) -> Vec3) -> Vec<Ray
     let ((center, half), mut random) = (bounds(scene), Random(2));
     let ray = |number: u32| {
         let axis = number as usize % 3;
-        let sign = if number % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if number.is_multiple_of(2) { 1.0 } else { -1.0 };
         let mut direction = Vec3::splat(if number % 4 < 2 { 0.0 } else { -0.0 });
         direction[axis] = sign;
         let mut origin = at(&mut random);

@@ -34,8 +34,8 @@ impl DisplayPass {
         let params = DisplayParams {
             exposure: how.exposure.exp2(),
             filmic: u32::from(how.tone == ToneCurve::Filmic),
-            // Formats with more than 8 bits take linear values, sRGB formats encode by themselves.
-            encode_srgb: u32::from(!format.is_srgb() && format.target_pixel_byte_cost() == Some(4)),
+            // Wider formats take linear values, sRGB formats encode by themselves.
+            encode_srgb: u32::from(!format.is_srgb() && format.components() == 4 && format.block_copy_size(None) == Some(4)),
             width: size[0],
             height: size[1],
             ..Default::default()

@@ -19,8 +19,8 @@ use crate::{
 const PARAMS: [Binding; 1] = [Binding::Uniform];
 const OUTPUTS: [Binding; 2] = [Binding::ReadWrite; 2];
 const LEDGER: Purpose = Purpose { what: "the lights' ledgers", remedy: "use fewer lights" };
-/// Words of the ledger before its accounts: rays (low, high), unfinished, deposits.
-const COUNTERS: u64 = 4;
+/// Words of the ledger before its accounts: rays (low, high), unfinished, deposits (low, high).
+const COUNTERS: u64 = 5;
 /// Words of a light's accounts.
 const LIGHT_WORDS: usize = ledger::ACCOUNTS as usize * 3 * 2;
 /// The largest flux of a photon, in units, as a power of two: the digits of an f32.
@@ -170,7 +170,7 @@ impl Photons {
         let accounts = &words[COUNTERS as usize..];
         Ok(PhotonCounts {
             rays: u64::from(words[1]) << 32 | u64::from(words[0]),
-            deposits: words[3],
+            deposits: u64::from(words[4]) << 32 | u64::from(words[3]),
             ledgers: accounts.chunks_exact(LIGHT_WORDS).take(lights).map(|light| self.ledger_of(light)).collect(),
         })
     }
@@ -211,7 +211,7 @@ fn emitters(scene: &Scene, casters: &[BoundingSphere]) -> Vec<Emitter> {
 #[derive(Clone, Debug)]
 pub(crate) struct PhotonCounts {
     pub rays: u64,
-    pub deposits: u32,
+    pub deposits: u64,
     pub ledgers: Vec<Ledger>,
 }
 

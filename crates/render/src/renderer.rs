@@ -217,7 +217,7 @@ impl Renderer {
         let counts = on_device.photons.counts(&self.gpu, on_device.scene.lights.len())?;
         Ok(Statistics {
             photons: on_device.photon_count,
-            deposits: u64::from(counts.deposits),
+            deposits: counts.deposits,
             photon_rays: counts.rays,
             samples: on_device.sample_count,
             camera_rays: on_device.samples.rays(&self.gpu)?,
