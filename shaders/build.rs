@@ -33,8 +33,9 @@ fn link(compiler: &Wesl<FileResolver>, kernel: &str) -> Result<String, String> {
     let root: ModulePath = format!("package::{kernel}").parse().map_err(|error| format!("{kernel}: {error}"))?;
     let linked = compiler.compile(&root).map_err(|error| format!("shaders/{kernel}.wgsl does not link:\n{error}"))?;
     let source = linked.syntax.to_string();
-    let module = naga::front::wgsl::parse_str(&source)
-        .map_err(|error| describe(kernel, &linked.sourcemap, &source, error.location(&source), error.emit_to_string(&source)))?;
+    let module = naga::front::wgsl::parse_str(&source).map_err(|error| {
+        describe(kernel, &linked.sourcemap, &source, error.location(&source), error.emit_to_string(&source))
+    })?;
     Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| {
         let text = error.emit_to_string(&source);
         describe(kernel, &linked.sourcemap, &source, error.location(&source), text)
@@ -59,8 +60,6 @@ fn describe(
     let file = declaration
         .zip(map.as_ref())
         .and_then(|(name, map)| map.get_decl(name))
-        .map_or(format!("shaders/{kernel}.wgsl"), |(path, _)| {
-            format!("shaders/{}.wgsl", path.components.join("/"))
-        });
+        .map_or(format!("shaders/{kernel}.wgsl"), |(path, _)| format!("shaders/{}.wgsl", path.components.join("/")));
     format!("{file}, linked into kernel {kernel}: {text}")
 }

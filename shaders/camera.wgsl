@@ -5,11 +5,11 @@ import package::bsdf::phong::receiver_bsdf;
 import package::bsdf::specular::scatter_specular;
 import package::emitter::sphere::{nearest_light, sample_sphere_cone};
 import package::film::texels::footprint;
-import package::geometry::records::load_triangle;
+import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{camera_params, film, irradiance};
-import package::layout::scene::{lights, materials, Triangle, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_PHONG, NONE};
+import package::layout::scene::{Material, Triangle, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_PHONG, NONE};
 import package::medium::absorption::transmittance;
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
@@ -83,21 +83,21 @@ fn next_choice(path: ptr<function, Path>) -> f32 {
 }
 
 /// Sends the path on from a mirror or a dielectric.
-fn meet_caster(path: ptr<function, Path>, point: SurfacePoint, material: u32) {
-    let kind = materials[material].kind;
+fn meet_caster(path: ptr<function, Path>, point: SurfacePoint, material_index: u32, material: Material) {
+    let kind = material.kind;
     var u = 0.0;
     if kind == MATERIAL_DIELECTRIC {
         u = next_choice(path);
     }
-    let ior = materials[material].ior;
+    let ior = material.ior;
     let eta = select(ior, 1.0 / ior, point.front);
     let event = scatter_specular(kind, (*path).direction, point.n_g, point.n_s, eta, u);
     if event.transmitted {
         // Radiance is squeezed into a narrower cone in a denser medium: L/n² is what stays.
-        (*path).beta *= materials[material].tint * (eta * eta);
-        (*path).medium = select(NONE, material, point.front);
+        (*path).beta *= material.tint * (eta * eta);
+        (*path).medium = select(NONE, material_index, point.front);
     } else if kind == MATERIAL_MIRROR {
-        (*path).beta *= materials[material].reflectance;
+        (*path).beta *= material.reflectance;
     }
     (*path).origin = leave(point, event.direction);
     (*path).direction = event.direction;
@@ -106,42 +106,47 @@ fn meet_caster(path: ptr<function, Path>, point: SurfacePoint, material: u32) {
 /// The light that the first draw of this sample chooses.
 fn choose_light(u: f32) -> u32 {
     var light = 0u;
-    while light + 1u < camera_params.light_count && u >= lights[light].cumulative_probability {
+    while light + 1u < camera_params.light_count && u >= load_light(light).cumulative_probability {
         light += 1u;
     }
     return light;
 }
 
 /// Turns the path into a shadow ray toward a point of one light.
-fn aim_at_light(path: ptr<function, Path>, point: SurfacePoint, material: u32) {
+fn aim_at_light(path: ptr<function, Path>, point: SurfacePoint, material: Material) {
     let index = choose_light(padded_1(camera_params.sample_index, (*path).seed, SLOT_LIGHT));
-    let before = select(0.0, lights[max(index, 1u) - 1u].cumulative_probability, index > 0u);
-    let probability = lights[index].cumulative_probability - before;
+    let light = load_light(index);
+    let before = select(0.0, load_light(max(index, 1u) - 1u).cumulative_probability, index > 0u);
+    let probability = light.cumulative_probability - before;
     let u = padded_2(camera_params.sample_index, (*path).seed, SLOT_LIGHT_POINT);
-    let to_light = sample_sphere_cone(lights[index].center, lights[index].radius, point.position, u);
+    let to_light = sample_sphere_cone(light.center, light.radius, point.position, u);
     let cos_light = dot(to_light.direction, point.n_s);
     if to_light.solid_angle <= 0.0 || probability <= 0.0 || cos_light <= 0.0 || dot(to_light.direction, point.n_g) <= 0.0 {
         return;
     }
     let reflected = receiver_bsdf(material, to_light.direction, -(*path).direction, point.n_s);
-    (*path).unblocked = (*path).beta * reflected * lights[index].radiance * (cos_light * to_light.solid_angle / probability);
+    (*path).unblocked = (*path).beta * reflected * light.radiance * (cos_light * to_light.solid_angle / probability);
     (*path).is_shadow_ray = true;
     (*path).origin = leave(point, to_light.direction);
     (*path).direction = to_light.direction;
     (*path).length = SHADOW_RAY_LENGTH * to_light.distance;
 }
 
+/// Irradiance in a texel of the energy maps, W/m².
+fn map_irradiance(texel: u32) -> vec3<f32> {
+    return textureLoad(irradiance, record_texel(texel), 0).xyz;
+}
+
 /// Shades a receiver: ambient light, the caustics in its map, and one light's point, which the next ray tests.
-fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point: SurfacePoint) {
-    let material = triangle.material;
+fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point: SurfacePoint, material: Material) {
     let place = footprint(hit, triangle.object, point.front);
-    let caustic = place.weights.x * irradiance[place.texels.x].xyz + place.weights.y * irradiance[place.texels.y].xyz
-        + place.weights.z * irradiance[place.texels.z].xyz + place.weights.w * irradiance[place.texels.w].xyz;
-    (*path).radiance += (*path).beta * materials[material].reflectance / PI * caustic;
-    if materials[material].kind == MATERIAL_PHONG {
-        (*path).radiance += (*path).beta * materials[material].ambient * camera_params.ambient;
+    let caustic = place.weights.x * map_irradiance(place.texels.x) + place.weights.y * map_irradiance(place.texels.y)
+        + place.weights.z * map_irradiance(place.texels.z) + place.weights.w * map_irradiance(place.texels.w);
+    (*path).radiance += (*path).beta * material.reflectance / PI * caustic;
+    if material.kind == MATERIAL_PHONG {
+        (*path).radiance += (*path).beta * material.ambient * camera_params.ambient;
     }
-    if camera_params.light_count > 0u {
+    if camera_params.look_for_light != 0u {
         aim_at_light(path, point, material);
     }
 }
@@ -150,21 +155,21 @@ fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point:
 fn meet_surface(path: ptr<function, Path>, hit: Hit) -> bool {
     let triangle = load_triangle(hit.triangle);
     let point = surface_point(hit, triangle, (*path).direction);
-    let material = triangle.material;
-    let kind = materials[material].kind;
+    let material = load_material(triangle.material);
+    let kind = material.kind;
     if kind == MATERIAL_MIRROR || kind == MATERIAL_DIELECTRIC {
-        meet_caster(path, point, material);
+        meet_caster(path, point, triangle.material, material);
         (*path).depth += 1u;
         return (*path).depth < camera_params.max_depth;
     }
-    meet_receiver(path, hit, triangle, point);
+    meet_receiver(path, hit, triangle, point, material);
     return (*path).is_shadow_ray;
 }
 
 /// Lets a path see what lies along its ray; returns whether another ray follows.
 fn advance(path: ptr<function, Path>) -> bool {
     let is_shadow_ray = (*path).is_shadow_ray;
-    let light = nearest_light((*path).origin, (*path).direction, (*path).length);
+    let light = nearest_light(camera_params.light_count, (*path).origin, (*path).direction, (*path).length);
     let hit = trace((*path).origin, (*path).direction, light.t, is_shadow_ray);
     let met_light = light.t < (*path).length;
     if is_shadow_ray {
@@ -178,7 +183,7 @@ fn advance(path: ptr<function, Path>) -> bool {
         return meet_surface(path, hit);
     }
     if met_light {
-        (*path).radiance += (*path).beta * transmittance((*path).medium, light.t) * lights[light.light].radiance;
+        (*path).radiance += (*path).beta * transmittance((*path).medium, light.t) * load_light(light.light).radiance;
     } else {
         (*path).radiance += (*path).beta * camera_params.background;
     }
@@ -198,6 +203,8 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     if pixel.x >= camera_params.width || pixel.y >= camera_params.height {
         return;
     }
+    // One path a lane: starting the next sample as soon as one ends fills the lanes better, but every step then costs a start
+    // too, which on software adapters is more.
     var path = start_path(pixel);
     var rays = 0u;
     var finished = false;

@@ -5,14 +5,14 @@ import package::emitter::emission::emit;
 import package::emitter::sphere::nearest_light;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
-import package::geometry::records::load_triangle;
+import package::layout::records::{load_material, load_triangle};
 import package::geometry::surface::{leave, surface_point};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
     energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS,
 };
-import package::layout::scene::{materials, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, NONE};
+import package::layout::scene::{MATERIAL_DIELECTRIC, MATERIAL_MIRROR, NONE};
 import package::medium::absorption::transmittance;
 import package::sampling::sobol::{padded_1, sobol_5};
 
@@ -113,8 +113,8 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
     let triangle = load_triangle(hit.triangle);
     let point = surface_point(hit, triangle, d);
-    let material = triangle.material;
-    let kind = materials[material].kind;
+    let material = load_material(triangle.material);
+    let kind = material.kind;
     if kind != MATERIAL_MIRROR && kind != MATERIAL_DIELECTRIC {
         // Light that met no caster belongs to the camera pass.
         if (*photon).depth == 0u {
@@ -129,13 +129,13 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     if kind == MATERIAL_DIELECTRIC {
         u = next_choice(photon);
     }
-    let ior = materials[material].ior;
+    let ior = material.ior;
     let event = scatter_specular(kind, d, point.n_g, point.n_s, select(ior, 1.0 / ior, point.front), u);
     if event.transmitted {
-        change_flux(photon, materials[material].tint, LEDGER_ABSORBED);
-        (*photon).medium = select(NONE, material, point.front);
+        change_flux(photon, material.tint, LEDGER_ABSORBED);
+        (*photon).medium = select(NONE, triangle.material, point.front);
     } else if kind == MATERIAL_MIRROR {
-        change_flux(photon, materials[material].reflectance, LEDGER_ABSORBED);
+        change_flux(photon, material.reflectance, LEDGER_ABSORBED);
     }
     change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
     (*photon).origin = leave(point, event.direction);
@@ -192,7 +192,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             in_flight = false;
             continue;
         }
-        let light = nearest_light(photon.origin, photon.direction, 3.0e38);
+        let light = nearest_light(photon_params.light_count, photon.origin, photon.direction, 3.0e38);
         let hit = trace(photon.origin, photon.direction, light.t, false);
         rays += 1u;
         let met_light = hit.triangle == NONE && light.t < 3.0e38;

@@ -1,6 +1,7 @@
 // Between the phases: fixed-point sums of flux become irradiance.
 
 import package::film::fixed_point::wide_to_f32;
+import package::layout::records::record_texel;
 import package::layout::resolve_pass::{energy_sums, resolve_params, resolved_irradiance, texel_areas};
 
 fn watts(texel: u32, channel: u32) -> f32 {
@@ -19,5 +20,5 @@ fn resolve_irradiance(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_in
     if area > 0.0 {
         value = vec3<f32>(watts(texel, 0u), watts(texel, 1u), watts(texel, 2u)) / area;
     }
-    resolved_irradiance[texel] = vec4<f32>(value, 0.0);
+    textureStore(resolved_irradiance, record_texel(texel), vec4<f32>(value, 0.0));
 }

@@ -1,7 +1,7 @@
 //! What a scene costs before its first photon: two teapots on a floor (97,206 triangles).
 //!
-//! `bvh`: the hierarchy on every core, in triangles a second. `texel_areas/SIZE`: the areas of one side of the floor, SIZE × SIZE / 2
-//! texels, in texels a second. `set_scene`: everything, until the device has it, in triangles a second.
+//! `bvh`: the hierarchy on every core, in triangles a second. `texel_areas/SIZE`: the areas of one side of the floor, which has
+//! SIZE × SIZE / 2 texels, in texels a second. `set_scene`: everything, until the device has it, in triangles a second.
 //!
 //! ```text
 //! cargo bench -p diacaustic-benches --bench scene_setup

@@ -1,7 +1,7 @@
 //! Rays a second against two teapots on a floor (97,206 triangles): the traversal alone, without shading.
 //!
-//! `primary`: camera rays of a picture of 1024 × 1024 pixels, in the order in which `shaders/camera.wgsl` takes them. `incoherent`:
-//! from where those met a surface, in directions even over the sphere. `shadow`: from there to the lamp, any hit. Each
+//! `primary`: camera rays of a picture of 1024 × 1024 pixels, in the order in which `shaders/camera.wgsl` takes them.
+//! `incoherent`: from where those met a surface, in directions even over the sphere. `shadow`: from there to the lamp, any hit. Each
 //! pass is one dispatch of `Renderer::trace_rays` over rays that lie on the device, and the wait for it.
 //!
 //! ```text

@@ -3,8 +3,8 @@
 use diacaustic::scene::Scene;
 use diacaustic_tests::scene;
 
-/// A glass teapot on a plaster floor of 4 m × 2 m, in a picture of 64 × 64 pixels. The map of the floor's upper side has `map_size` ×
-/// `map_size` / 2 texels and that of its lower side as many: the largest, of 2048² together, is within 128 MiB.
+/// A glass teapot on a plaster floor of 4 m × 2 m, in a picture of 64 × 64 pixels. The map of the floor's upper side has
+/// `map_size` × `map_size` / 2 texels and that of its lower side as many: the largest, of 2048² together, is within 128 MiB.
 pub fn teapot(map_size: u32) -> Scene {
     teapots(&[[0.0, 0.0, 0.0]], map_size)
 }

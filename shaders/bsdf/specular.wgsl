@@ -25,10 +25,16 @@ fn turn(kind: u32, d: vec3<f32>, n: vec3<f32>, eta: f32, u: f32) -> SpecularEven
 
 /// Turns direction `d` at the shading normal, or at the geometric one where the first would send it to the wrong side.
 fn scatter_specular(kind: u32, d: vec3<f32>, n_g: vec3<f32>, n_s: vec3<f32>, eta: f32, u: f32) -> SpecularEvent {
-    var event = turn(kind, d, n_s, eta, u);
-    let side = dot(event.direction, n_g);
-    if select(side <= 0.0, side >= 0.0, event.transmitted) {
-        event = turn(kind, d, n_g, eta, u);
+    var event: SpecularEvent;
+    var n = n_s;
+    // A loop rather than two calls: the second turn is rare, and calls are inlined.
+    for (var attempt = 0u; attempt < 2u; attempt++) {
+        event = turn(kind, d, n, eta, u);
+        let side = dot(event.direction, n_g);
+        if select(side > 0.0, side < 0.0, event.transmitted) {
+            break;
+        }
+        n = n_g;
     }
     return event;
 }

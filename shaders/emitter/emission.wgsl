@@ -2,7 +2,7 @@
 
 import package::emitter::sphere::{cone_height, sample_sphere_cone};
 import package::layout::photon_pass::photon_params;
-import package::layout::scene::lights;
+import package::layout::records::load_light;
 import package::sampling::warp::{disc, frame, PI};
 
 /// A photon at its birth.
@@ -23,7 +23,7 @@ fn aim_pdf(k: u32, cos_axis: f32, cone: f32) -> f32 {
 
 /// A ray toward the aim discs, weighted by the one-sample balance heuristic over all of them.
 fn emit_aimed(u: vec4<f32>) -> Emission {
-    let light = lights[photon_params.light];
+    let light = load_light(photon_params.light);
     let scaled = u.x * f32(photon_params.aim_disc_count);
     let chosen = min(u32(scaled), photon_params.aim_disc_count - 1u);
     let aim = photon_params.aim_discs[chosen];
@@ -48,7 +48,7 @@ fn emit_aimed(u: vec4<f32>) -> Emission {
 
 /// A ray from anywhere on the light in any direction, cosine-weighted.
 fn emit_unaimed(u: vec4<f32>) -> Emission {
-    let light = lights[photon_params.light];
+    let light = load_light(photon_params.light);
     let z = 1.0 - 2.0 * u.z;
     let ring = sqrt(max(1.0 - z * z, 0.0));
     let phi = 2.0 * PI * u.w;

@@ -1,6 +1,6 @@
 // Spherical emitters.
 
-import package::layout::scene::{lights, SphereLight};
+import package::layout::records::load_light;
 import package::sampling::warp::{frame, PI};
 
 /// A direction toward a sphere.
@@ -49,16 +49,16 @@ struct LightHit {
 }
 
 /// The nearest light whose outside the ray meets before `t_max`; `t` is `t_max` if there is none.
-fn nearest_light(origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> LightHit {
+fn nearest_light(light_count: u32, origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> LightHit {
     var hit = LightHit(0u, t_max);
-    for (var i = 0u; i < arrayLength(&lights); i++) {
-        let radius = lights[i].radius;
-        let from_center = origin - lights[i].center;
+    for (var i = 0u; i < light_count; i++) {
+        let light = load_light(i);
+        let from_center = origin - light.center;
         let along = dot(from_center, direction);
         // The vector from the centre to the ray's nearest point keeps its digits where |from_center|² − R² loses them.
         let nearest = from_center - along * direction;
-        let quarter_chord2 = radius * radius - dot(nearest, nearest);
-        if radius > 0.0 && along < 0.0 && quarter_chord2 > 0.0 {
+        let quarter_chord2 = light.radius * light.radius - dot(nearest, nearest);
+        if along < 0.0 && quarter_chord2 > 0.0 {
             let t = -along - sqrt(quarter_chord2);
             if t > 0.0 && t < hit.t {
                 hit = LightHit(i, t);

@@ -1,8 +1,7 @@
 // Places in an object's energy map; docs/photon-paths.md, "Deposit".
 
-import package::geometry::records::load_corners;
+import package::layout::records::{load_corners, load_object};
 import package::geometry::traverse::Hit;
-import package::layout::scene::objects;
 
 /// The four texels around a point of a surface and their bilinear weights.
 struct Footprint {
@@ -14,7 +13,7 @@ struct Footprint {
 
 fn footprint(hit: Hit, object_index: u32, front: bool) -> Footprint {
     let c = load_corners(hit.triangle);
-    let object = objects[object_index];
+    let object = load_object(object_index);
     let b = hit.barycentric;
     let at = (1.0 - b.x - b.y) * c.texel_01.xy + b.x * c.texel_01.zw + b.y * vec2<f32>(c.texel_x_2, c.texel_y_2);
     let last = vec2<f32>(f32(object.map_width - 2u), f32(object.map_height - 2u));

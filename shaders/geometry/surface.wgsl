@@ -1,6 +1,6 @@
 // The surface at a hit.
 
-import package::geometry::records::load_corners;
+import package::layout::records::load_corners;
 import package::geometry::traverse::Hit;
 import package::layout::scene::Triangle;
 

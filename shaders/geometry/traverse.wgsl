@@ -1,6 +1,6 @@
 // Rays against the scene's triangles: eight-wide compressed BVH (Ylitie, Karras and Laine 2017).
 
-import package::geometry::records::{load_node, load_triangle};
+import package::layout::records::{load_node, load_triangle};
 import package::layout::scene::{BvhNode, NONE};
 
 /// Entries of the traversal stack; the host refuses a deeper tree.
@@ -52,11 +52,21 @@ fn planes(low: u32, high: u32, scale: f32, offset: f32) -> Planes {
     return Planes(near * scale + offset, far * scale + offset);
 }
 
+/// Units in the last place by which a box's exit is put off.
+const ROUNDING: i32 = 6;
+
+/// Floats as integers of the same order, where they are not negative.
+fn order(value: vec4<f32>) -> vec4<i32> {
+    return bitcast<vec4<i32>>(value);
+}
+
 /// Which of four children the ray meets before `t_max`, as bits of a node's hit mask.
 fn meet_four(x: Planes, y: Planes, z: Planes, descriptions: u32, octant: u32, t_max: f32) -> u32 {
-    let enter = max(max(x.near, y.near), max(z.near, vec4<f32>(0.0)));
-    // The factor covers the rounding of the planes' distances, so that no ray slips between two boxes.
-    let leave = min(min(x.far, y.far), min(z.far, vec4<f32>(t_max))) * 1.0000006;
+    // The bits of floats that are not negative order like integers, and integers have minima and maxima that need no care for
+    // NaN. A negative entry becomes 0; a negative exit stays negative, which misses.
+    let enter = max(max(order(x.near), order(y.near)), max(order(z.near), vec4<i32>(0)));
+    // Some units in the last place cover the rounding of the planes' distances, so that no ray slips between two boxes.
+    let leave = min(min(order(x.far), order(y.far)), min(order(z.far), order(vec4<f32>(t_max)))) + ROUNDING;
     let inner = (descriptions & (descriptions << 1u)) & 0x10101010u;
     let inner_mask = (inner >> 4u) * 0xffu;
     let places = unpack4xU8((descriptions ^ (octant & inner_mask)) & 0x1f1f1f1fu);

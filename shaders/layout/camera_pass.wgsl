@@ -34,6 +34,14 @@ struct CameraParams {
     lens_up: vec3<f32>,
     /// Height of the picture, pixels.
     height: u32,
+    /// 1 if some light has flux, so that receivers look for it.
+    look_for_light: u32,
+    /// Unused.
+    padding_0: u32,
+    /// Unused.
+    padding_1: u32,
+    /// Unused.
+    padding_2: u32,
     /// The inverse cumulative distribution of the pixel filter at 64 even steps from 0 to 1, pixels from the centre.
     filter_inverse_cdf: array<vec4<f32>, 16>,
 }
@@ -52,6 +60,6 @@ struct Film {
 }
 
 @group(1) @binding(0) var<uniform> camera_params: CameraParams;
-/// Irradiance of each texel, W/m²; the last component is unused.
-@group(2) @binding(0) var<storage, read> irradiance: array<vec4<f32>>;
+/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
+@group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;

@@ -37,14 +37,14 @@ struct PhotonParams {
     units_per_watt: f32,
     /// Factor on every photon's flux: 1 / (the light's share of all photons).
     flux_factor: f32,
+    /// Lights in the scene.
+    light_count: u32,
     /// Unused.
     padding_0: u32,
-    /// Unused.
-    padding_1: u32,
     /// Flux Φ of the light, W.
     flux: vec3<f32>,
     /// Unused.
-    padding_2: u32,
+    padding_1: u32,
     /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
     /// at neighbouring points.
     order: array<vec4<u32>, 8>,

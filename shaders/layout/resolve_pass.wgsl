@@ -17,5 +17,5 @@ struct ResolveParams {
 @group(0) @binding(1) var<storage, read> energy_sums: array<u32>;
 /// Area of each texel, m².
 @group(0) @binding(2) var<storage, read> texel_areas: array<f32>;
-/// Irradiance of each texel, W/m²; the last component is unused.
-@group(0) @binding(3) var<storage, read_write> resolved_irradiance: array<vec4<f32>>;
+/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
+@group(0) @binding(3) var resolved_irradiance: texture_storage_2d<rgba32float, write>;

@@ -88,7 +88,7 @@ struct Material {
 struct SphereLight {
     /// Centre, metres, world frame.
     center: vec3<f32>,
-    /// Radius, metres; 0 marks the filler of an empty list.
+    /// Radius, metres.
     radius: f32,
     /// Radiance, W/(m² sr).
     radiance: vec3<f32>,
@@ -104,9 +104,9 @@ const MATERIAL_DIELECTRIC: u32 = 3u;
 /// Marks the absence of an index.
 const NONE: u32 = 0xffffffffu;
 
-/// Width of the textures that hold geometry, texels, as a power of two. Record after record of 16-byte texels, row by row:
+/// Width of the textures that hold records, texels, as a power of two. Record after record of 16-byte texels, row by row:
 /// software adapters read texels far faster than storage buffers, and a texture may be larger than a storage binding.
-const GEOMETRY_WIDTH_BITS: u32 = 13u;
+const RECORDS_WIDTH_BITS: u32 = 13u;
 
 /// BvhNode records of 5 texels.
 @group(0) @binding(0) var nodes: texture_2d<u32>;
@@ -114,6 +114,9 @@ const GEOMETRY_WIDTH_BITS: u32 = 13u;
 @group(0) @binding(1) var triangles: texture_2d<u32>;
 /// TriangleCorners records of 4 texels, floating-point numbers as their bits.
 @group(0) @binding(2) var corners: texture_2d<u32>;
-@group(0) @binding(3) var<storage, read> objects: array<Object>;
-@group(0) @binding(4) var<storage, read> materials: array<Material>;
-@group(0) @binding(5) var<storage, read> lights: array<SphereLight>;
+/// Object records of 1 texel.
+@group(0) @binding(3) var objects: texture_2d<u32>;
+/// Material records of 5 texels, floating-point numbers as their bits.
+@group(0) @binding(4) var materials: texture_2d<u32>;
+/// SphereLight records of 2 texels, floating-point numbers as their bits.
+@group(0) @binding(5) var lights: texture_2d<u32>;

@@ -134,7 +134,7 @@ shared_structs! {
     struct SphereLight {
         /// Centre, metres, world frame.
         center: [f32; 3],
-        /// Radius, metres; 0 marks the filler of an empty list.
+        /// Radius, metres.
         radius: f32,
         /// Radiance, W/(m² sr).
         radiance: [f32; 3],
@@ -174,14 +174,14 @@ shared_structs! {
         units_per_watt: f32,
         /// Factor on every photon's flux: 1 / (the light's share of all photons).
         flux_factor: f32,
+        /// Lights in the scene.
+        light_count: u32,
         /// Unused.
         padding_0: u32,
-        /// Unused.
-        padding_1: u32,
         /// Flux Φ of the light, W.
         flux: [f32; 3],
         /// Unused.
-        padding_2: u32,
+        padding_1: u32,
         /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
         /// at neighbouring points.
         order: [[u32; 4]; 8],
@@ -222,6 +222,14 @@ shared_structs! {
         lens_up: [f32; 3],
         /// Height of the picture, pixels.
         height: u32,
+        /// 1 if some light has flux, so that receivers look for it.
+        look_for_light: u32,
+        /// Unused.
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+        /// Unused.
+        padding_2: u32,
         /// The inverse cumulative distribution of the pixel filter at 64 even steps from 0 to 1, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
@@ -283,8 +291,8 @@ shared_structs! {
 pub const NONE: u32 = u32::MAX;
 /// The most aim discs that a light has.
 pub const MAX_AIM_DISCS: u32 = 16;
-/// Width of the textures that hold geometry, texels, as a power of two.
-pub const GEOMETRY_WIDTH_BITS: u32 = 13;
+/// Width of the textures that hold records, texels, as a power of two.
+pub const RECORDS_WIDTH_BITS: u32 = 13;
 /// Entries of the traversal stack: the deepest BVH that the kernels follow.
 pub const STACK_SIZE: u32 = 24;
 
@@ -325,7 +333,7 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
     ("MAX_AIM_DISCS", MAX_AIM_DISCS),
     ("STACK_SIZE", STACK_SIZE),
-    ("GEOMETRY_WIDTH_BITS", GEOMETRY_WIDTH_BITS),
+    ("RECORDS_WIDTH_BITS", RECORDS_WIDTH_BITS),
     ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
     ("MATERIAL_PHONG", material_kind::PHONG),
     ("MATERIAL_MIRROR", material_kind::MIRROR),

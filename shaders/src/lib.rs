@@ -6,9 +6,9 @@
 mod layout;
 
 pub use layout::{
-    AimDisc, BvhNode, CameraParams, DisplayParams, Material, Object, PhotonParams, QueryHit, QueryRay, ResolveParams, SHARED_CONSTANTS,
-    SHARED_STRUCTS, SharedField, SharedStruct, SphereLight, Triangle, TriangleCorners,
-    ledger, material_kind, GEOMETRY_WIDTH_BITS, MAX_AIM_DISCS, NONE, STACK_SIZE,
+    AimDisc, BvhNode, CameraParams, DisplayParams, MAX_AIM_DISCS, Material, NONE, Object, PhotonParams, QueryHit,
+    QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
+    SharedStruct, SphereLight, Triangle, TriangleCorners, ledger, material_kind,
 };
 
 /// A linked kernel.

@@ -6,7 +6,10 @@ use diacaustic_shaders::{KERNELS, SHARED_CONSTANTS, SHARED_STRUCTS, SharedStruct
 use naga::{AddressSpace, Literal, Module, TypeInner};
 
 fn modules() -> Vec<(&'static str, Module)> {
-    KERNELS.iter().map(|kernel| (kernel.name, naga::front::wgsl::parse_str(kernel.source).expect(kernel.name))).collect()
+    KERNELS
+        .iter()
+        .map(|kernel| (kernel.name, naga::front::wgsl::parse_str(kernel.source).expect(kernel.name)))
+        .collect()
 }
 
 /// A field's name, offset and size.
@@ -61,7 +64,8 @@ fn structs_agree() {
 
 #[test]
 fn a_difference_is_noticed() {
-    let module = naga::front::wgsl::parse_str("struct AimDisc { center: vec3<f32>, axis: vec3<f32>, radius: f32 }").unwrap();
+    let module =
+        naga::front::wgsl::parse_str("struct AimDisc { center: vec3<f32>, axis: vec3<f32>, radius: f32 }").unwrap();
     let shared = SHARED_STRUCTS.iter().find(|s| s.name == "AimDisc").unwrap();
     assert!(!differences(shared, "made up", &module).is_empty());
 }
@@ -69,12 +73,11 @@ fn a_difference_is_noticed() {
 #[test]
 fn doc_lines_agree() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("layout");
-    let text: String = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap())
-        .collect();
+    let text: String =
+        std::fs::read_dir(folder).unwrap().map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap()).collect();
     for shared in SHARED_STRUCTS {
-        let body = text.split(&format!("\nstruct {} {{\n", shared.name)).nth(1).and_then(|t| t.split("\n}").next()).unwrap();
+        let body =
+            text.split(&format!("\nstruct {} {{\n", shared.name)).nth(1).and_then(|t| t.split("\n}").next()).unwrap();
         for field in shared.fields {
             let docs: String = field.docs.iter().map(|line| format!("    ///{line}\n")).collect();
             let expected = format!("{docs}    {}: ", field.name);

@@ -12,7 +12,9 @@ use diacaustic_scene::{Scene, parse_scene};
 /// If there is no adapter: a failure that says what to install, never a silent skip.
 pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| open(&OpenOptions::default()).unwrap_or_else(|error| panic!("the tests need an adapter: {error}")))
+    GPU.get_or_init(|| {
+        open(&OpenOptions::default()).unwrap_or_else(|error| panic!("the tests need an adapter: {error}"))
+    })
 }
 
 /// A renderer with a scene set.

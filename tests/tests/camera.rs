@@ -36,8 +36,8 @@ fn picture_equals_path_tracing() {
     for (x, y) in (0..24u32).step_by(3).flat_map(|x| (1..24u32).step_by(3).map(move |y| (x, y))) {
         let estimate = radiance(&world, x, y, SAMPLES, 0, 5);
         let pixel = film.radiance[(y * film.width + x) as usize];
-        for channel in 0..3 {
-            let (found, expected) = (f64::from(pixel[channel]), estimate.mean[channel]);
+        for (channel, &found) in pixel.iter().enumerate() {
+            let (found, expected) = (f64::from(found), estimate.mean[channel]);
             let allowed =
                 4.5 * estimate.variance[channel].sqrt() + RENDERER_ERROR[0] * expected + RENDERER_ERROR[1] * mean;
             let ratio = (found - expected).abs() / allowed;

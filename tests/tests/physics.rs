@@ -192,8 +192,7 @@ fn in_a_furnace(object: &str) -> Film {
 
 #[test]
 fn furnace_of_flat_facets() {
-    let crystal =
-        "{ mesh = \"assets/meshes/crystal.obj\", material = \"glass\", translate = [0, -0.2, 0], scale = 2 }";
+    let crystal = "{ mesh = \"assets/meshes/crystal.obj\", material = \"glass\", translate = [0, -0.2, 0], scale = 2 }";
     for (number, pixel) in in_a_furnace(crystal).radiance.iter().enumerate() {
         assert!((pixel[1] - 1.0).abs() < 2e-3, "pixel {number} is {pixel:?} in a furnace of radiance 1");
     }
@@ -321,7 +320,9 @@ fn ledger_closes_exactly() {
     assert_eq!(statistics.ledgers.len(), 2);
     for ledger in &statistics.ledgers {
         assert_eq!(ledger.residue(), [0, 0, 0]);
-        for account in [ledger.emitted, ledger.deposited, ledger.direct, ledger.absorbed, ledger.escaped, ledger.cut_off] {
+        for account in
+            [ledger.emitted, ledger.deposited, ledger.direct, ledger.absorbed, ledger.escaped, ledger.cut_off]
+        {
             assert!(account[1] > 0, "an account is empty, so that nothing is tested: {ledger:?}");
         }
     }

@@ -69,8 +69,15 @@ fn both(scene: &Scene) -> Both {
     Both {
         gpu,
         reference: result.maps.swap_remove(1),
-        gpu_ledger: [ledger.emitted, ledger.deposited, ledger.direct, ledger.absorbed, ledger.escaped, ledger.shading_normals]
-            .map(watts),
+        gpu_ledger: [
+            ledger.emitted,
+            ledger.deposited,
+            ledger.direct,
+            ledger.absorbed,
+            ledger.escaped,
+            ledger.shading_normals,
+        ]
+        .map(watts),
         reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals],
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 
 /// The bindings of `shaders/layout/camera_pass.wgsl`.
 const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 2] = [Binding::Read, Binding::ReadWrite];
+const OUTPUTS: [Binding; 2] = [Binding::Texels, Binding::ReadWrite];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
@@ -55,7 +55,10 @@ impl Samples {
         Ok(Self {
             template: template(scene),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
-            outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.irradiance, &film]),
+            outputs_group: gpu.bind_resources(
+                &pass.outputs_layout,
+                vec![wgpu::BindingResource::TextureView(&maps.irradiance), film.as_entire_binding()],
+            ),
             params,
             film,
         })
@@ -102,17 +105,18 @@ fn template(scene: &Scene) -> CameraParams {
         half_right: (half_width * right).into(),
         focus_distance: camera.focus_distance,
         half_up: (half_height * up).into(),
-        sample_index: 0,
         forward: forward.into(),
         seed: combine(settings.seed, SEED_STREAM),
         background: scene.background.into(),
         max_depth: settings.max_depth,
         ambient: scene.ambient.into(),
-        light_count: if lit { scene.lights.len() as u32 } else { 0 },
+        light_count: scene.lights.len() as u32,
         lens_right: right.into(),
         width: settings.width,
         lens_up: up.into(),
         height: settings.height,
+        look_for_light: u32::from(lit),
         filter_inverse_cdf: filter_inverse_cdf(settings.filter),
+        ..Default::default()
     }
 }

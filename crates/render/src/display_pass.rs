@@ -29,13 +29,22 @@ impl DisplayPass {
     }
 
     /// Submits the drawing of a film of `size` pixels over the whole of `view`.
-    pub fn draw(&mut self, gpu: &Gpu, film: &wgpu::Buffer, size: [u32; 2], view: &wgpu::TextureView, how: &RenderParams) {
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        film: &wgpu::Buffer,
+        size: [u32; 2],
+        view: &wgpu::TextureView,
+        how: &RenderParams,
+    ) {
         let format = view.texture().format();
         let params = DisplayParams {
             exposure: how.exposure.exp2(),
             filmic: u32::from(how.tone == ToneCurve::Filmic),
             // Wider formats take linear values, sRGB formats encode by themselves.
-            encode_srgb: u32::from(!format.is_srgb() && format.components() == 4 && format.block_copy_size(None) == Some(4)),
+            encode_srgb: u32::from(
+                !format.is_srgb() && format.components() == 4 && format.block_copy_size(None) == Some(4),
+            ),
             width: size[0],
             height: size[1],
             ..Default::default()
@@ -51,7 +60,10 @@ impl DisplayPass {
                     view,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                        store: wgpu::StoreOp::Store,
+                    },
                 })],
                 ..Default::default()
             });

@@ -7,7 +7,7 @@ use glam::{DVec3, Mat3, Vec3};
 
 use crate::{
     Error,
-    gpu::{Binding, Gpu, Purpose},
+    gpu::{Binding, Gpu, Purpose, texture_bytes},
 };
 
 /// Bytes of a texel's three 64-bit sums.
@@ -49,11 +49,8 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
         .map(|(index, layout)| {
             let own = chunks.next_if(|chunk| chunk[0].object as usize == index).unwrap_or(&[]);
             layout.map(|layout| {
-                let receivers: Vec<_> = own
-                    .iter()
-                    .filter(|t| !scene.materials[t.material as usize].kind.is_caster())
-                    .copied()
-                    .collect();
+                let receivers: Vec<_> =
+                    own.iter().filter(|t| !scene.materials[t.material as usize].kind.is_caster()).copied().collect();
                 let placement = MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout };
                 first_texel += placement.layout.texel_count();
                 placement
@@ -115,7 +112,7 @@ fn shrink_to_budget(scene: &Scene, layouts: &mut [Option<MapLayout>], budget: u6
 pub(crate) struct EnergyMaps {
     pub placements: Vec<Option<MapPlacement>>,
     pub sums: wgpu::Buffer,
-    pub irradiance: wgpu::Buffer,
+    pub irradiance: wgpu::TextureView,
     pub bytes: u64,
     texel_count: u64,
     params: wgpu::Buffer,
@@ -131,7 +128,7 @@ pub(crate) struct ResolvePass {
 
 impl ResolvePass {
     pub fn new(gpu: &Gpu) -> Self {
-        let bindings = [Binding::Uniform, Binding::Read, Binding::Read, Binding::ReadWrite];
+        let bindings = [Binding::Uniform, Binding::Read, Binding::Read, Binding::WriteTexels];
         let layout = gpu.layout("resolve", wgpu::ShaderStages::COMPUTE, &bindings);
         let pipeline = gpu.compute_pipeline(RESOLVE, &[&layout]);
         Self { layout, pipeline }
@@ -164,10 +161,14 @@ impl EnergyMaps {
             .collect();
         let sums = gpu.zeroed(SUMS, texel_count * TEXEL_BYTES)?;
         let areas = gpu.filled(AREAS, &areas)?;
-        let irradiance = gpu.zeroed(IRRADIANCE, texel_count * 16)?;
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = gpu.texels(IRRADIANCE, wgpu::TextureFormat::Rgba32Float, usage, texel_count)?;
+        let irradiance = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let params = gpu.uniform::<ResolveParams>("resolve");
-        let bind_group = gpu.bind(&pass.layout, &[&params, &sums, &areas, &irradiance]);
-        let bytes = sums.size() + areas.size() + irradiance.size();
+        let mut resources: Vec<_> = [&params, &sums, &areas].map(|buffer| buffer.as_entire_binding()).into();
+        resources.push(wgpu::BindingResource::TextureView(&irradiance));
+        let bind_group = gpu.bind_resources(&pass.layout, resources);
+        let bytes = sums.size() + areas.size() + texture_bytes(&texture);
         Ok(Self { placements, sums, irradiance, bytes, texel_count, params, bind_group })
     }
 

@@ -36,7 +36,9 @@ pub enum Error {
         needed: u64,
     },
     /// The device ran out of memory.
-    #[error("the device is out of memory for this scene: lower map_size, the picture's size or the triangle count ({0})")]
+    #[error(
+        "the device is out of memory for this scene: lower map_size, the picture's size or the triangle count ({0})"
+    )]
     OutOfMemory(String),
     /// The device refused an operation.
     #[error("the device refused an operation: {0}")]

@@ -1,7 +1,7 @@
 //! Buffers, pipelines and read-back on the application's device.
 
 use bytemuck::Pod;
-use diacaustic_shaders::{GEOMETRY_WIDTH_BITS, Kernel};
+use diacaustic_shaders::{Kernel, RECORDS_WIDTH_BITS};
 use wgpu::util::DeviceExt as _;
 
 use crate::Error;
@@ -19,8 +19,12 @@ pub(crate) enum Binding {
     Uniform,
     Read,
     ReadWrite,
-    /// A texture of unsigned integers, read texel by texel.
+    /// A texture of records, read texel by texel as unsigned integers.
+    Records,
+    /// A texture of `Rgba32Float`, read texel by texel.
     Texels,
+    /// A texture of `Rgba32Float`, written texel by texel.
+    WriteTexels,
 }
 
 /// What a buffer is for, and what to do if it does not fit.
@@ -117,24 +121,10 @@ impl Gpu {
     /// A texture of 16-byte texels that holds `records` one after the other, row by row.
     pub fn records<T: Pod>(&self, purpose: Purpose, records: &[T]) -> Result<wgpu::Texture, Error> {
         let bytes: &[u8] = bytemuck::cast_slice(records);
-        let row = 16usize << GEOMETRY_WIDTH_BITS;
-        let height = bytes.len().div_ceil(row).max(1);
-        let limit = u64::from(self.device.limits().max_texture_dimension_2d);
-        if height as u64 > limit {
-            let (asked, available) = (bytes.len() as u64, limit * row as u64);
-            return Err(Error::BufferTooLarge { what: purpose.what, asked, available, remedy: purpose.remedy });
-        }
-        let size = wgpu::Extent3d { width: 1 << GEOMETRY_WIDTH_BITS, height: height as u32, depth_or_array_layers: 1 };
-        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(purpose.what),
-            size,
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let row = 16usize << RECORDS_WIDTH_BITS;
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texels = (bytes.len() / 16) as u64;
+        let texture = self.texels(purpose, wgpu::TextureFormat::Rgba32Uint, usage, texels)?;
         let (whole_rows, rest) = bytes.split_at(bytes.len() / row * row);
         self.write_rows(&texture, 0, whole_rows);
         if !rest.is_empty() {
@@ -145,9 +135,41 @@ impl Gpu {
         Ok(texture)
     }
 
+    /// A zeroed texture of at least `count` texels of 16 bytes, in rows of 2^`RECORDS_WIDTH_BITS`.
+    pub fn texels(
+        &self,
+        purpose: Purpose,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+        count: u64,
+    ) -> Result<wgpu::Texture, Error> {
+        let height = count.div_ceil(1 << RECORDS_WIDTH_BITS).max(1);
+        let limit = u64::from(self.device.limits().max_texture_dimension_2d);
+        if height > limit {
+            let available = limit * (16 << RECORDS_WIDTH_BITS);
+            return Err(Error::BufferTooLarge {
+                what: purpose.what,
+                asked: 16 * count,
+                available,
+                remedy: purpose.remedy,
+            });
+        }
+        let width = 1 << RECORDS_WIDTH_BITS;
+        Ok(self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(purpose.what),
+            size: wgpu::Extent3d { width, height: height as u32, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        }))
+    }
+
     /// Writes whole rows of a texture of records.
     fn write_rows(&self, texture: &wgpu::Texture, first_row: u32, bytes: &[u8]) {
-        let row = 16u32 << GEOMETRY_WIDTH_BITS;
+        let row = 16u32 << RECORDS_WIDTH_BITS;
         let height = bytes.len() as u32 / row;
         if height == 0 {
             return;
@@ -161,7 +183,7 @@ impl Gpu {
             },
             bytes,
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
-            wgpu::Extent3d { width: 1 << GEOMETRY_WIDTH_BITS, height, depth_or_array_layers: 1 },
+            wgpu::Extent3d { width: 1 << RECORDS_WIDTH_BITS, height, depth_or_array_layers: 1 },
         );
     }
 
@@ -275,14 +297,26 @@ impl Gpu {
 
 fn binding_type(binding: Binding) -> wgpu::BindingType {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let texture = |sample_type| wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
     match binding {
         Binding::Uniform => buffer(wgpu::BufferBindingType::Uniform),
         Binding::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
         Binding::ReadWrite => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-        Binding::Texels => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Uint,
+        Binding::Records => texture(wgpu::TextureSampleType::Uint),
+        Binding::Texels => texture(wgpu::TextureSampleType::Float { filterable: false }),
+        Binding::WriteTexels => wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: wgpu::TextureFormat::Rgba32Float,
             view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
         },
     }
+}
+
+/// Bytes of a texture of 16-byte texels.
+pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
+    16 * u64::from(texture.width()) * u64::from(texture.height())
 }

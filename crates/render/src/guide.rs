@@ -163,14 +163,17 @@ mod tests {
         for bits in [8, 9, 13] {
             let order = photon_order(bits);
             let photons: Vec<u32> = (0..1u32 << bits)
-                .map(|place| (0..bits).fold(0, |index, bit| index ^ if place >> bit & 1 == 1 { order[bit as usize] } else { 0 }))
+                .map(|place| {
+                    (0..bits).fold(0, |index, bit| index ^ if place >> bit & 1 == 1 { order[bit as usize] } else { 0 })
+                })
                 .collect();
             let mut sorted = photons.clone();
             sorted.sort_unstable();
             assert!(sorted.iter().copied().eq(0..1 << bits));
             // The first half of the places has the first coordinate below one half, the next digit halves the second.
             assert!(photons[..photons.len() / 2].iter().all(|index| index.reverse_bits() < 1 << 31));
-            let second = |index: u32| (0..32).fold(0, |y, bit| y ^ if index >> bit & 1 == 1 { pascal_column(bit) } else { 0 });
+            let second =
+                |index: u32| (0..32).fold(0, |y, bit| y ^ if index >> bit & 1 == 1 { pascal_column(bit) } else { 0 });
             assert!(photons[..photons.len() / 4].iter().all(|&index| second(index) < 1 << 31));
         }
     }

@@ -18,8 +18,8 @@
 //! ```
 
 pub use diacaustic_scene as scene;
-pub use diacaustic_surface::MapLayout;
 pub use diacaustic_shaders::AimDisc;
+pub use diacaustic_surface::MapLayout;
 pub use {glam, wgpu};
 
 mod camera_pass;

@@ -59,6 +59,7 @@ pub(crate) struct Photons {
     emitters: Vec<Emitter>,
     seed: u32,
     max_depth: u32,
+    light_count: u32,
     photons_per_invocation: u32,
     /// Units of the fixed-point sums in a watt: a power of two, so that scaling is exact.
     pub units_per_watt: f32,
@@ -90,6 +91,7 @@ impl Photons {
             emitters,
             seed: scene.settings.seed,
             max_depth: scene.settings.max_depth,
+            light_count: scene.lights.len() as u32,
             photons_per_invocation,
             units_per_watt: (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2(),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
@@ -150,6 +152,7 @@ impl Photons {
             lane_count,
             seed: combine(combine(self.seed, SEED_STREAM), emitter.light as u32),
             max_depth: self.max_depth,
+            light_count: self.light_count,
             aim_disc_count: discs.len() as u32,
             ordered: u32::from(block.order.is_some()),
             units_per_watt: self.units_per_watt,

@@ -68,7 +68,8 @@ impl QueryPass {
                 any_hit: u32::from(any_hit),
             })
             .collect();
-        let poison = vec![QueryHit { triangle: NONE - 1, t: f32::NAN, barycentric_1: 0.0, barycentric_2: 0.0 }; rays.len()];
+        let poison =
+            vec![QueryHit { triangle: NONE - 1, t: f32::NAN, barycentric_1: 0.0, barycentric_2: 0.0 }; rays.len()];
         let rays_buffer = gpu.filled(RAYS, &packed)?;
         let hits = gpu.filled(HITS, &poison)?;
         Ok(RayBatch {

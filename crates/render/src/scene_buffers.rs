@@ -9,12 +9,11 @@ use glam::Vec2;
 use crate::{
     Error,
     energy_map::MapPlacement,
-    gpu::{Binding, Gpu, Purpose},
+    gpu::{Binding, Gpu, Purpose, texture_bytes},
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 6] =
-    [Binding::Texels, Binding::Texels, Binding::Texels, Binding::Read, Binding::Read, Binding::Read];
+pub(crate) const BINDINGS: [Binding; 6] = [Binding::Records; 6];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -23,7 +22,7 @@ const OBJECTS: Purpose = Purpose { what: "the scene's objects", remedy: "use few
 const MATERIALS: Purpose = Purpose { what: "the scene's materials", remedy: "use fewer materials" };
 const LIGHTS: Purpose = Purpose { what: "the scene's lights", remedy: "use fewer lights" };
 
-/// The scene's buffers, and what they weigh.
+/// The scene's records, and what they weigh.
 #[derive(Debug)]
 pub(crate) struct SceneBuffers {
     pub bind_group: wgpu::BindGroup,
@@ -47,20 +46,13 @@ impl SceneBuffers {
             gpu.records(NODES, nodes)?,
             gpu.records(TRIANGLES, &triangles)?,
             gpu.records(CORNERS, &corners)?,
+            gpu.records(OBJECTS, &objects)?,
+            gpu.records(MATERIALS, &materials)?,
+            gpu.records(LIGHTS, &lights(scene))?,
         ];
-        let buffers = [
-            gpu.filled(OBJECTS, &objects)?,
-            gpu.filled(MATERIALS, &materials)?,
-            gpu.filled(LIGHTS, &lights(scene))?,
-        ];
-        let texture_bytes = |t: &wgpu::Texture| 16 * u64::from(t.width()) * u64::from(t.height());
-        let bytes = textures.iter().map(texture_bytes).sum::<u64>() + buffers.iter().map(wgpu::Buffer::size).sum::<u64>();
+        let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let resources = views
-            .iter()
-            .map(wgpu::BindingResource::TextureView)
-            .chain(buffers.iter().map(wgpu::Buffer::as_entire_binding))
-            .collect();
+        let resources = views.iter().map(wgpu::BindingResource::TextureView).collect();
         Ok(Self { bind_group: gpu.bind_resources(layout, resources), bytes })
     }
 }

@@ -41,8 +41,7 @@ impl LoopLimit {
 
     /// Photons that an invocation may take one after the other.
     pub(crate) fn photons_per_invocation(self) -> u32 {
-        self.iterations.map_or(PHOTONS_PER_INVOCATION, |limit| {
-            (limit / ITERATIONS_PER_PHOTON).clamp(1, PHOTONS_PER_INVOCATION)
-        })
+        self.iterations
+            .map_or(PHOTONS_PER_INVOCATION, |limit| (limit / ITERATIONS_PER_PHOTON).clamp(1, PHOTONS_PER_INVOCATION))
     }
 }
