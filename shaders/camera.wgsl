@@ -45,9 +45,10 @@ struct Path {
     seed: u32,
 }
 
-/// Offset from the pixel's centre, drawn with the filter's density.
+/// Offset from the pixel's centre, drawn with the filter's density. Steps of the table are even in the angle whose cosine is
+/// 1 − 2u, which puts most where the filter's tails are.
 fn filter_offset(u: f32) -> f32 {
-    let at = u * 63.0;
+    let at = acos(1.0 - 2.0 * u) * (63.0 / PI);
     let k = min(u32(at), 62u);
     let low = camera_params.filter_inverse_cdf[k >> 2u][k & 3u];
     let high = camera_params.filter_inverse_cdf[(k + 1u) >> 2u][(k + 1u) & 3u];

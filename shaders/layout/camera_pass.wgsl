@@ -42,7 +42,7 @@ struct CameraParams {
     padding_1: u32,
     /// Unused.
     padding_2: u32,
-    /// The inverse cumulative distribution of the pixel filter at 64 even steps from 0 to 1, pixels from the centre.
+    /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
     filter_inverse_cdf: array<vec4<f32>, 16>,
 }
 
