@@ -388,3 +388,29 @@ fn thin_lens_blurs_to_its_circle_of_confusion() {
     let brought = energy * pixel * pixel / (radiance * PI * r * r);
     assert!((brought - 1.0).abs() < 0.01, "the lens brings {brought} of the lamp's light");
 }
+
+#[test]
+fn mirrors_that_face_each_other_are_followed_to_the_end() {
+    // Adapters that end long loops must not end these paths early: each photon bounces up to a thousand times.
+    let scene = scene(
+        "camera = { position = [0, 1, 9], look_at = [0, 0, 0], vertical_fov = 40 }
+         render = { map_size = 16, max_depth = 1000 }
+         lights = [{ type = \"sphere\", center = [0, 0.5, 0], radius = 0.1, flux = 1 }]
+         materials.mirror = { type = \"mirror\", reflectance = 1 }
+         materials.floor = { type = \"diffuse\", albedo = 0.5 }
+         objects = [
+             { rectangle = { center = [0, -1, 0], edge_u = [8, 0, 0], edge_v = [0, 0, -8] }, material = \"mirror\" },
+             { rectangle = { center = [0, 1, 0], edge_u = [8, 0, 0], edge_v = [0, 0, 8] }, material = \"mirror\" },
+             { rectangle = { center = [9, 0, 0], edge_u = [0, 8, 0], edge_v = [0, 0, 8] }, material = \"floor\" },
+         ]",
+    );
+    let photons = 1 << 16;
+    let renderer = emit(&scene, photons);
+    let statistics = renderer.statistics().expect("no invocation is cut short");
+    let ledger = statistics.ledgers[0];
+    assert_eq!(ledger.residue(), [0, 0, 0]);
+    // A photon leaves by the sides after |tan θ| · 4 m or so; only the steepest are left after a thousand mirrors 2 m apart.
+    let cut_off = ledger.watts(ledger.cut_off, photons).y;
+    assert!(cut_off < 1e-3, "{cut_off} W of 1 W are cut off");
+    assert!(statistics.photon_rays > 3 * photons, "the photons hardly bounce, so nothing is tested");
+}

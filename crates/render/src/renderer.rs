@@ -110,7 +110,7 @@ impl Renderer {
         let on_device = self.gpu.guarded(|| {
             let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &placements)?;
             let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
-            let per_invocation = self.loop_limit.photons_per_invocation();
+            let per_invocation = self.loop_limit.photons_per_invocation(scene.settings.max_depth);
             Ok(OnDevice {
                 photons: Photons::new(&self.gpu, &self.photon_pass, scene, &casters, &maps, per_invocation)?,
                 samples: Samples::new(&self.gpu, &self.camera_pass, scene, &maps)?,

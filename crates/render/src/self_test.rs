@@ -13,8 +13,8 @@ const ASKED: u32 = 200_000;
 const NEEDED: u32 = 16_384;
 /// Photons that an invocation takes one after the other on an adapter without a limit.
 const PHOTONS_PER_INVOCATION: u32 = 16;
-/// Iterations to allow for each of an invocation's photons on an adapter with a limit.
-const ITERATIONS_PER_PHOTON: u32 = 4096;
+/// Iterations to allow for each ray on an adapter with a limit: nodes and triangles met, with room for lanes that wait.
+const ITERATIONS_PER_RAY: u32 = 128;
 
 const COUNTS: Purpose = Purpose { what: "the self-test's counters", remedy: "use another adapter" };
 
@@ -39,9 +39,10 @@ impl LoopLimit {
         Ok(Self { iterations: (ran < ASKED).then_some(ran) })
     }
 
-    /// Photons that an invocation may take one after the other.
-    pub(crate) fn photons_per_invocation(self) -> u32 {
-        self.iterations
-            .map_or(PHOTONS_PER_INVOCATION, |limit| (limit / ITERATIONS_PER_PHOTON).clamp(1, PHOTONS_PER_INVOCATION))
+    /// Photons of at most `max_depth` rays that an invocation may take one after the other.
+    pub(crate) fn photons_per_invocation(self, max_depth: u32) -> u32 {
+        self.iterations.map_or(PHOTONS_PER_INVOCATION, |limit| {
+            (limit / ITERATIONS_PER_RAY.saturating_mul(max_depth)).clamp(1, PHOTONS_PER_INVOCATION)
+        })
     }
 }
