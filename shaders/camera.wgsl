@@ -147,7 +147,7 @@ fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point:
     if material.kind == MATERIAL_PHONG {
         (*path).radiance += (*path).beta * material.ambient * camera_params.ambient;
     }
-    if camera_params.look_for_light != 0u {
+    if camera_params.light_count > 0u {
         aim_at_light(path, point, material);
     }
 }

@@ -34,14 +34,6 @@ struct CameraParams {
     lens_up: vec3<f32>,
     /// Height of the picture, pixels.
     height: u32,
-    /// 1 if some light has flux, so that receivers look for it.
-    look_for_light: u32,
-    /// Unused.
-    padding_0: u32,
-    /// Unused.
-    padding_1: u32,
-    /// Unused.
-    padding_2: u32,
     /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
     filter_inverse_cdf: array<vec4<f32>, 16>,
 }

@@ -332,6 +332,9 @@ fn a_ray_ends_at_its_length() {
 fn no_rays_have_no_hits_and_no_scene_is_an_error() {
     let with_scene = renderer(&alone("mesh = \"assets/meshes/crystal.obj\""));
     assert_eq!(with_scene.intersect(&[], false).unwrap(), []);
+    let too_many = vec![endless(Vec3::ZERO, Vec3::X); 65_535 * 64 + 1];
+    let error = with_scene.intersect(&too_many, false).unwrap_err();
+    assert!(matches!(error, Error::BufferTooLarge { .. }), "{error}");
     let without = Renderer::new(&gpu().device, &gpu().queue, &RendererOptions::default()).unwrap();
     let error = without.intersect(&[endless(Vec3::ZERO, Vec3::X)], false).unwrap_err();
     assert!(matches!(error, Error::NoScene), "{error}");

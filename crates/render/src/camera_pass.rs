@@ -7,7 +7,7 @@ use crate::{
     Error, Film,
     energy_map::EnergyMaps,
     film::filter_inverse_cdf,
-    gpu::{Binding, Gpu, Purpose},
+    gpu::{Binding, Gpu, Purpose, wide},
     random::combine,
 };
 
@@ -88,7 +88,7 @@ impl Samples {
         if words[2] > 0 {
             return Err(Error::CutShort { invocations: words[2] });
         }
-        Ok(u64::from(words[1]) << 32 | u64::from(words[0]))
+        Ok(wide([words[0], words[1]]))
     }
 }
 
@@ -98,13 +98,13 @@ fn template(scene: &Scene) -> CameraParams {
     let [right, up, forward] = camera.axes();
     let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
     let half_width = half_height * settings.width as f32 / settings.height as f32;
-    let lit = scene.lights.iter().any(|light| light.kind.flux().max_element() > 0.0);
     CameraParams {
         position: camera.position.into(),
         aperture_radius: camera.aperture_radius,
         half_right: (half_width * right).into(),
         focus_distance: camera.focus_distance,
         half_up: (half_height * up).into(),
+        sample_index: 0,
         forward: forward.into(),
         seed: combine(settings.seed, SEED_STREAM),
         background: scene.background.into(),
@@ -115,8 +115,6 @@ fn template(scene: &Scene) -> CameraParams {
         width: settings.width,
         lens_up: up.into(),
         height: settings.height,
-        look_for_light: u32::from(lit),
         filter_inverse_cdf: filter_inverse_cdf(settings.filter),
-        ..Default::default()
     }
 }

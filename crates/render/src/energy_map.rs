@@ -7,7 +7,7 @@ use glam::{DVec3, Mat3, Vec3};
 
 use crate::{
     Error,
-    gpu::{Binding, Gpu, Purpose, texture_bytes},
+    gpu::{Binding, Gpu, Purpose, texture_bytes, wide},
 };
 
 /// Bytes of a texel's three 64-bit sums.
@@ -183,9 +183,8 @@ impl EnergyMaps {
         let Some(placement) = &self.placements[object] else { return Ok(None) };
         let count = placement.layout.texel_count();
         let first = 3 * placement.first_texel;
-        // A sum is two words, the low one first: a little-endian 64-bit integer.
         let words: Vec<[u32; 2]> = gpu.read(&self.sums, first..first + 3 * count)?;
-        let sum = |[low, high]: [u32; 2]| (u64::from(high) << 32 | u64::from(low)) as i64;
+        let sum = |words| wide(words) as i64;
         Ok(Some(EnergyMap {
             width: placement.layout.width,
             height: placement.layout.height,

@@ -320,3 +320,8 @@ fn binding_type(binding: Binding) -> wgpu::BindingType {
 pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
     16 * u64::from(texture.width()) * u64::from(texture.height())
 }
+
+/// The 64-bit integer that the kernels keep in two words, the low one first.
+pub(crate) fn wide([low, high]: [u32; 2]) -> u64 {
+    u64::from(high) << 32 | u64::from(low)
+}

@@ -10,7 +10,7 @@ use glam::DVec3;
 use crate::{
     Error, Ledger,
     energy_map::EnergyMaps,
-    gpu::{Binding, Gpu, Purpose},
+    gpu::{Binding, Gpu, Purpose, wide},
     guide::{Block, Emission, blocks},
     random::combine,
 };
@@ -172,8 +172,8 @@ impl Photons {
         }
         let accounts = &words[COUNTERS as usize..];
         Ok(PhotonCounts {
-            rays: u64::from(words[1]) << 32 | u64::from(words[0]),
-            deposits: u64::from(words[4]) << 32 | u64::from(words[3]),
+            rays: wide([words[0], words[1]]),
+            deposits: wide([words[3], words[4]]),
             ledgers: accounts.chunks_exact(LIGHT_WORDS).take(lights).map(|light| self.ledger_of(light)).collect(),
         })
     }
@@ -181,10 +181,7 @@ impl Photons {
     fn ledger_of(&self, words: &[u32]) -> Ledger {
         let account = |number: u32| {
             let at = number as usize * 6;
-            std::array::from_fn(|channel| {
-                let (low, high) = (words[at + 2 * channel], words[at + 2 * channel + 1]);
-                (u64::from(high) << 32 | u64::from(low)) as i64
-            })
+            std::array::from_fn(|channel| wide([words[at + 2 * channel], words[at + 2 * channel + 1]]) as i64)
         };
         Ledger {
             emitted: account(ledger::EMITTED),

@@ -11,6 +11,11 @@ use crate::{
 const RAYS: Purpose = Purpose { what: "the rays of a query", remedy: "ask about fewer rays at once" };
 const HITS: Purpose = Purpose { what: "the hits of a query", remedy: "ask about fewer rays at once" };
 
+/// What poisons a hit before the kernel writes it: no triangle has this index.
+const UNWRITTEN: u32 = NONE - 1;
+/// Rays that one dispatch takes: WebGPU's most workgroups along a dimension.
+const MAX_RAYS: usize = 65_535 * WORKGROUP_SIZE as usize;
+
 /// A ray to ask about, world frame, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -59,6 +64,11 @@ impl QueryPass {
     }
 
     pub fn upload(&self, gpu: &Gpu, rays: &[Ray], any_hit: bool) -> Result<RayBatch, Error> {
+        if rays.len() > MAX_RAYS {
+            let bytes = |count: usize| (count * size_of::<QueryRay>()) as u64;
+            let (asked, available) = (bytes(rays.len()), bytes(MAX_RAYS));
+            return Err(Error::BufferTooLarge { what: RAYS.what, asked, available, remedy: RAYS.remedy });
+        }
         let packed: Vec<_> = rays
             .iter()
             .map(|ray| QueryRay {
@@ -69,7 +79,7 @@ impl QueryPass {
             })
             .collect();
         let poison =
-            vec![QueryHit { triangle: NONE - 1, t: f32::NAN, barycentric_1: 0.0, barycentric_2: 0.0 }; rays.len()];
+            vec![QueryHit { triangle: UNWRITTEN, t: f32::NAN, barycentric_1: 0.0, barycentric_2: 0.0 }; rays.len()];
         let rays_buffer = gpu.filled(RAYS, &packed)?;
         let hits = gpu.filled(HITS, &poison)?;
         Ok(RayBatch {
@@ -91,6 +101,10 @@ impl RayBatch {
         if self.count == 0 {
             return Ok(Vec::new());
         }
-        gpu.read(&self.hits, 0..u64::from(self.count))
+        let hits: Vec<QueryHit> = gpu.read(&self.hits, 0..u64::from(self.count))?;
+        if hits.iter().any(|hit| hit.triangle == UNWRITTEN) {
+            return Err(Error::Device("a ray query left hits unwritten".into()));
+        }
+        Ok(hits)
     }
 }
