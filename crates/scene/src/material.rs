@@ -9,9 +9,13 @@ pub struct Material {
     pub name: String,
     /// What it does to light.
     pub kind: MaterialKind,
+    /// Radiance that the surface's front sends in each direction (Lambertian), W/(m² sr) per channel, ≥ 0. Dielectrics and
+    /// thin-walled glass have none.
+    pub emission: Vec3,
 }
 
-/// The scattering models. Colours are linear Rec. 709, per channel.
+/// The scattering models, as `docs/materials.md` defines them. Colours are linear Rec. 709, per channel. `roughness` is that of
+/// glTF, from 0 to 1: the GGX width α is its square, and below [`SMOOTH`] the surface is perfectly smooth.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MaterialKind {
     /// A Lambertian surface, on both sides.
@@ -36,23 +40,81 @@ pub enum MaterialKind {
         /// Reflected share of the incident flux, 0 to 1.
         reflectance: Vec3,
     },
-    /// A smooth dielectric: the object's closed surface bounds a volume of this index.
+    /// A metal, on both sides.
+    Conductor {
+        /// Real part of its index of refraction, > 0.
+        eta: Vec3,
+        /// Imaginary part (extinction coefficient), ≥ 0.
+        k: Vec3,
+        /// Roughness.
+        roughness: f32,
+    },
+    /// A dielectric: the object's closed surface bounds a volume of this index.
     Dielectric {
-        /// Index of refraction against the surroundings, > 0.
+        /// Index of refraction, > 0; that of air is 1.
         ior: f32,
         /// Factor on light at each crossing of the boundary, 0 to 1.
         tint: Vec3,
         /// Absorption coefficient σ of the interior, 1/m, ≥ 0 (Beer–Lambert).
         absorption: Vec3,
+        /// Roughness.
+        roughness: f32,
+        /// Where volumes overlap, the one of the highest priority fills the place; among equals, that of the material listed first.
+        priority: i32,
+    },
+    /// A sheet of glass without thickness, on both sides: light passes straight or is reflected, after all inner reflections.
+    ThinWalled {
+        /// Index of refraction, > 0.
+        ior: f32,
+        /// Factor on light that passes, 0 to 1.
+        tint: Vec3,
+    },
+    /// A Lambertian base under a clear coat (plastic, varnish), on both sides.
+    Coated {
+        /// Albedo of the base, 0 to 1.
+        albedo: Vec3,
+        /// Index of refraction of the coat, ≥ 1.
+        ior: f32,
+        /// Roughness of the coat.
+        roughness: f32,
+    },
+    /// glTF's metallic-roughness model, on both sides.
+    MetallicRoughness {
+        /// Base colour, 0 to 1.
+        base_color: Vec3,
+        /// Share of metal, 0 to 1.
+        metallic: f32,
+        /// Roughness.
+        roughness: f32,
     },
 }
 
+/// Roughness under which a surface is perfectly smooth.
+pub const SMOOTH: f32 = 0.03;
+
+/// Roughness from which the gloss of a material that is also diffuse belongs to the receiver: next-event estimation resolves it.
+/// Below, it is mirror-like and casts light on.
+pub const GLOSSY: f32 = 0.3;
+
 impl MaterialKind {
-    /// Whether the material passes light on along one direction: a *caster*, whose light the energy maps own.
-    /// Everything else is a *receiver* and has an energy map.
+    /// Whether the material passes light on along one direction or a narrow lobe: a *caster*, whose light the energy maps own.
     ///
-    /// The one place where this is decided, for both passes.
+    /// This and [`is_receiver`](Self::is_receiver) are the one place where this is decided, for both passes. A material can be both.
     pub fn is_caster(&self) -> bool {
-        matches!(self, Self::Mirror { .. } | Self::Dielectric { .. })
+        match *self {
+            Self::Mirror { .. } | Self::Dielectric { .. } | Self::ThinWalled { .. } | Self::Conductor { .. } => true,
+            Self::Coated { roughness, .. } => roughness < GLOSSY,
+            Self::MetallicRoughness { metallic, roughness, .. } => metallic == 1.0 || roughness < GLOSSY,
+            Self::Diffuse { .. } | Self::Phong { .. } => false,
+        }
+    }
+
+    /// Whether the material has a diffuse lobe: a *receiver*, whose object has an energy map.
+    pub fn is_receiver(&self) -> bool {
+        match *self {
+            Self::Diffuse { .. } | Self::Phong { .. } | Self::Coated { .. } => true,
+            Self::MetallicRoughness { metallic, .. } => metallic < 1.0,
+            Self::Mirror { .. } | Self::Dielectric { .. } | Self::ThinWalled { .. } | Self::Conductor { .. } => false,
+        }
     }
 }

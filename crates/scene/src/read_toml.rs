@@ -77,7 +77,7 @@ impl<'d> Sections<'d> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
         let mut materials = Vec::new();
         for (name, table) in &self.materials {
-            materials.push(Material { name: name.clone(), kind: read_material(table)? });
+            materials.push(Material { name: name.clone(), kind: read_material(table)?, emission: Vec3::ZERO });
         }
         let mut scene = Scene {
             background: color("background")?,
@@ -151,7 +151,17 @@ fn read_camera(table: &Table<'_>) -> Result<Camera, Error> {
 }
 
 fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
-    table.allow_only(&["width", "height", "samples", "photons", "seed", "max_depth", "map_size", "filter"])?;
+    table.allow_only(&[
+        "width",
+        "height",
+        "samples",
+        "photons",
+        "seed",
+        "max_depth",
+        "max_bounces",
+        "map_size",
+        "filter",
+    ])?;
     let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
     let filters = [("box", PixelFilter::Box), ("blackman-harris", PixelFilter::BlackmanHarris)];
@@ -162,6 +172,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         photons: table.get("photons").map_or(Ok(default.photons), |entry| entry.whole())?,
         seed: whole("seed", default.seed)?,
         max_depth: whole("max_depth", default.max_depth)?,
+        max_bounces: whole("max_bounces", default.max_bounces)?,
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
     })
@@ -230,6 +241,8 @@ fn read_material(table: &Table<'_>) -> Result<MaterialKind, Error> {
             ior: table.require("ior", "a number, the index of refraction")?.number()?,
             tint: color_or("tint", 1.0)?,
             absorption: color_or("absorption", 0.0)?,
+            roughness: 0.0,
+            priority: 0,
         },
     })
 }
@@ -242,6 +255,7 @@ fn read_lights(tables: &[Table<'_>]) -> Result<Vec<Light>, Error> {
         let name = table.get("name").map(|entry| entry.string("a string")).transpose()?;
         lights.push(Light {
             name: name.map_or_else(|| format!("light {}", index + 1), str::to_owned),
+            photon_share: 1,
             kind: LightKind::Sphere {
                 center: table.require("center", "3 numbers [x, y, z], metres")?.vector()?,
                 radius: table.require("radius", "a number, metres")?.number()?,

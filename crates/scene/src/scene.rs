@@ -11,7 +11,8 @@ use crate::{Camera, Light, Material, Mesh};
 pub struct Scene {
     /// The view.
     pub camera: Camera,
-    /// Radiance of what lies beyond every object, W/(m² sr).
+    /// Radiance of what lies beyond every object, W/(m² sr): even light from everywhere, on top of the environment if there
+    /// is one.
     pub background: Vec3,
     /// Ambient radiance of the `phong` material, W/(m² sr).
     pub ambient: Vec3,
@@ -68,6 +69,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// The most surfaces that a photon or a camera path meets before it is cut off.
     pub max_depth: u32,
+    /// The diffuse surfaces that light meets after the first one that the camera sees: 0 for direct light and caustics alone.
+    pub max_bounces: u32,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// The pixel's reconstruction filter.
@@ -114,6 +117,7 @@ impl Default for RenderSettings {
             photons: 1_000_000,
             seed: 0,
             max_depth: 32,
+            max_bounces: 8,
             map_size: None,
             filter: PixelFilter::default(),
         }

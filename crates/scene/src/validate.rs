@@ -9,8 +9,8 @@ use std::{
 use glam::Vec3;
 
 use crate::{
-    Camera, Chart, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings,
-    Scene, Subject, Warning,
+    Camera, Chart, Error, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings, Scene,
+    Subject, Warning,
 };
 
 /// How far the square of a unit normal's length may be from 1.
@@ -61,11 +61,11 @@ impl Scene {
         for (index, light) in self.lights.iter().enumerate() {
             let at = At(Subject::Light { index, name: light.name.clone() });
             at.unique_name(&mut names, index, &light.name)?;
-            let LightKind::Sphere { center, radius, flux } = light.kind;
+            let LightKind::Sphere { center, radius, flux } = light.kind else { continue };
             at.position("center", center)?;
             at.number("radius", radius, above(0.0), "greater than 0 (metres)")?;
             at.channels("flux", flux, 0.0.., "0 or greater (watts)")?;
-            at.require(light.kind.radiance().is_finite(), "radius", || {
+            at.require(light.kind.strength().is_finite(), "radius", || {
                 format!("is {radius:e}; so small a light of this flux has no finite radiance; it must be larger")
             })?;
         }
@@ -112,7 +112,7 @@ impl Scene {
         let mut kinds = self.objects.iter().flat_map(|object| &object.materials).map(|i| &self.materials[*i].kind);
         let has_caster = kinds.clone().any(MaterialKind::is_caster);
         let has_receiver = kinds.any(|kind| !kind.is_caster());
-        let has_light = self.lights.iter().any(|light| light.kind.flux() != Vec3::ZERO);
+        let has_light = self.lights.iter().any(|light| !light.kind.is_dark());
         let is_dark = self.background == Vec3::ZERO && self.ambient == Vec3::ZERO;
         let findings = [
             (!has_caster, Warning::NoCaster),
@@ -138,39 +138,11 @@ impl Scene {
         if boundary.signed_volume() < 0.0 {
             warnings.push(Warning::InsideOutDielectric { object: name() });
         }
-        let object_from_world = object.world_from_object.inverse();
-        let contains = |point| encloses(&boundary, object_from_world.transform_point3(point));
-        for Light { name: light, kind: LightKind::Sphere { center, .. } } in &self.lights {
-            if contains(*center) {
-                warnings.push(Warning::LightInsideDielectric { light: light.clone(), object: name() });
-            }
-        }
-        if contains(self.camera.position) {
-            warnings.push(Warning::CameraInsideDielectric { object: name() });
-        }
-    }
-
-    /// The surface that bounds an object's dielectric, if it has one: its dielectric triangles if they close by
-    /// themselves or with the rest do not, else all of its triangles.
-    fn dielectric_boundary(&self, object: &Object) -> Option<Mesh> {
-        let is_dielectric =
-            |triangle| matches!(self.materials[object.material_of(triangle)].kind, MaterialKind::Dielectric { .. });
-        let all = 0..object.mesh.triangles.len();
-        let part: Vec<_> = all.filter(|t| is_dielectric(*t)).map(|t| object.mesh.triangles[t]).collect();
-        if part.is_empty() {
-            return None;
-        }
-        let surface = |triangles| Mesh { positions: object.mesh.positions.clone(), triangles, ..Mesh::default() };
-        let part = surface(part);
-        if part.open_edges() == 0 || object.mesh.open_edges() > 0 {
-            return Some(part);
-        }
-        Some(surface(object.mesh.triangles.clone()))
     }
 
     fn camera_in_light_warnings(&self) -> Vec<Warning> {
         let holds_camera = |kind: &LightKind| {
-            let LightKind::Sphere { center, radius, .. } = *kind;
+            let LightKind::Sphere { center, radius, .. } = *kind else { return false };
             center.distance(self.camera.position) < radius
         };
         let lights = self.lights.iter().filter(|light| holds_camera(&light.kind));
@@ -233,11 +205,15 @@ fn check_material(index: usize, material: &Material) -> Result<(), Error> {
             share("specular", specular)?;
             at.number("shininess", shininess, above(0.0), "finite and greater than 0")
         }
-        MaterialKind::Dielectric { ior, tint, absorption } => {
+        MaterialKind::Dielectric { ior, tint, absorption, .. } => {
             at.number("ior", ior, above(0.0), "finite and greater than 0")?;
             share("tint", tint)?;
             at.channels("absorption", absorption, 0.0.., "0 or greater (1/m)")
         }
+        MaterialKind::Conductor { .. }
+        | MaterialKind::ThinWalled { .. }
+        | MaterialKind::Coated { .. }
+        | MaterialKind::MetallicRoughness { .. } => Ok(()),
     }
 }
 
@@ -290,14 +266,6 @@ fn check_placement(at: &At, object: &Object) -> Result<(), Error> {
     at.require(object.mesh.positions.iter().all(is_placed_in_reach), "world_from_object", || {
         "moves the mesh more than 1e9 metres from the origin; translate or scale it less".to_owned()
     })
-}
-
-/// Whether a point of the object frame lies inside a closed mesh.
-fn encloses(mesh: &Mesh, point: Vec3) -> bool {
-    let lowest = mesh.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let highest = mesh.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    let is_in_bounds = point.cmpge(lowest).all() && point.cmple(highest).all();
-    is_in_bounds && mesh.winding_number(point).abs() > 0.5
 }
 
 fn is_in_reach(position: Vec3) -> bool {

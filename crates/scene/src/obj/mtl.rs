@@ -37,7 +37,7 @@ pub(super) fn slot_materials(
         if let Some(entry) = entry.filter(|entry| !entry.textures.is_empty()) {
             warnings.push(Warning::IgnoredTextures { material: slot.clone(), maps: entry.textures.join(", ") });
         }
-        materials.push(entry.map(|entry| Material { name: slot.clone(), kind: entry.kind() }));
+        materials.push(entry.map(|entry| Material { name: slot.clone(), kind: entry.kind(), emission: Vec3::ZERO }));
     }
     materials
 }
@@ -71,6 +71,8 @@ impl Entry {
                 ior: self.ior.unwrap_or(DEFAULT_IOR),
                 tint: self.transmission.or(colour).unwrap_or(Vec3::ONE),
                 absorption: Vec3::ZERO,
+                roughness: 0.0,
+                priority: 0,
             }
         } else if model == 3.0 {
             MaterialKind::Mirror { reflectance: self.specular.unwrap_or(Vec3::ONE) }
