@@ -1,26 +1,30 @@
-// Phase 2: one sample of every pixel. A path follows casters to the first receiver, which it shades with the light it can see
-// and the irradiance in its energy map.
+// Phase 2: one sample of every pixel. A path follows casters and bounces between receivers; at each receiver it gathers the light it can
+// see and the irradiance in the energy map. docs/materials.md defines what surfaces do.
 
-import package::bsdf::phong::receiver_bsdf;
-import package::bsdf::specular::scatter_specular;
-import package::emitter::sphere::{nearest_light, sample_sphere_cone};
+import package::bsdf::base::{base_bsdf, gloss_reflectance};
+import package::bsdf::specular::{evaluate_specular, outer_interface, scatter_specular, Interface};
+import package::emitter::illumination::{illuminate, FAR};
+import package::emitter::sky::{light_probability, sky_radiance};
+import package::emitter::sphere::{nearest_sphere, SphereHit};
 import package::film::texels::footprint;
-import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{camera_params, film, irradiance};
-import package::layout::scene::{Material, Triangle, MATERIAL_DIELECTRIC, MATERIAL_MIRROR, MATERIAL_PHONG, NONE};
-import package::medium::absorption::transmittance;
+import package::layout::records::{load_light, load_material, load_triangle, record_texel};
+import package::layout::scene::{
+    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER, NONE,
+};
+import package::medium::media::{medium_ior, transmittance, with_medium, without_medium};
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
-import package::sampling::warp::{disc, PI};
+import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
 
-/// Slots of the padded numbers; choices between reflection and refraction have those below.
-const SLOT_LIGHT: u32 = 2048u;
-const SLOT_LIGHT_POINT: u32 = 2049u;
+/// First slot of the padded numbers for microfacet normals; choices have those below.
+const SLOT_MICROFACET: u32 = 4096u;
+/// First slot of the padded numbers of vertices that gather light, eight each.
+const SLOT_VERTEX: u32 = 8192u;
 /// The share of the distance to a light that a shadow ray covers.
 const SHADOW_RAY_LENGTH: f32 = 0.9999;
-const FAR: f32 = 3.0e38;
 
 /// A path from the lens into the scene.
 struct Path {
@@ -30,16 +34,29 @@ struct Path {
     beta: vec3<f32>,
     /// Radiance gathered, W/(m² sr).
     radiance: vec3<f32>,
-    /// Material of the medium that the ray is in, or NONE.
-    medium: u32,
-    /// Surfaces met.
+    /// The media that the ray is in.
+    media: vec4<u32>,
+    /// Casters met.
     depth: u32,
-    /// Choices between reflection and refraction made.
+    /// Receivers met.
+    bounces: u32,
+    /// Vertices that have gathered light.
+    gathered: u32,
+    /// Choices between lobes made.
     choices: u32,
     first_choice: f32,
-    /// Whether the ray asks for a light's visibility, and then its length and what it brings if nothing blocks it.
-    is_shadow_ray: bool,
-    length: f32,
+    /// Density with which the last surface drew the direction, 1/sr, where next-event estimation could have found the same light; 0 where not.
+    lobe_pdf: f32,
+    /// Whether what lights send along the ray, straight or through casters, is already counted: by next-event estimation or the map of
+    /// the last receiver.
+    lights_counted: bool,
+    /// Whether the path goes on along its ray.
+    goes_on: bool,
+    /// A light's visibility to ask for before: unit direction, distance, and what it brings if nothing blocks it.
+    shadow_pending: bool,
+    shadow_origin: vec3<f32>,
+    shadow_direction: vec3<f32>,
+    shadow_length: f32,
     unblocked: vec3<f32>,
     /// Seed of the pixel's random numbers.
     seed: u32,
@@ -66,71 +83,70 @@ fn start_path(pixel: vec2<u32>) -> Path {
     let view = camera_params.forward + screen.x * camera_params.half_right - screen.y * camera_params.half_up;
     let lens = camera_params.aperture_radius * disc(u.zw);
     let on_lens = lens.x * camera_params.lens_right + lens.y * camera_params.lens_up;
-    let direction = normalize(camera_params.focus_distance * view - on_lens);
-    return Path(
-        camera_params.position + on_lens, direction, vec3<f32>(1.0), vec3<f32>(0.0), NONE, 0u, 0u, numbers.fifth,
-        false, FAR, vec3<f32>(0.0), seed,
+    var path: Path;
+    path.origin = camera_params.position + on_lens;
+    path.direction = normalize(camera_params.focus_distance * view - on_lens);
+    path.beta = vec3<f32>(camera_params.exposure);
+    path.media = camera_params.media;
+    path.first_choice = numbers.fifth;
+    path.goes_on = true;
+    path.seed = seed;
+    return path;
+}
+
+/// A surface that a path has met.
+struct Vertex {
+    point: SurfacePoint,
+    material: Material,
+    kind: u32,
+    is_caster: bool,
+    is_receiver: bool,
+    /// The indices on the two sides.
+    sides: Interface,
+    /// The media beyond, for light that is transmitted.
+    beyond: vec4<u32>,
+    /// Reflectance of the gloss over a receiver's base, seen along the path; 0 without either.
+    gloss: vec3<f32>,
+    /// Probability with which the path takes the specular lobe.
+    specular_chance: f32,
+}
+
+/// The surface at `hit`. Its media say whether a boundary exists at all: where `beyond` begins with the same medium, it does not.
+fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex {
+    let point = surface_point(hit, triangle, (*path).direction);
+    let material = load_material(triangle.material);
+    let media = (*path).media;
+    let ior = medium_ior(media);
+    var vertex = Vertex(
+        point, material, material.kind & MATERIAL_KIND_BITS, (material.kind & MATERIAL_CASTER) != 0u,
+        (material.kind & MATERIAL_RECEIVER) != 0u, outer_interface(material, ior), media, vec3<f32>(0.0), 1.0,
     );
+    if vertex.kind == MATERIAL_DIELECTRIC {
+        var beyond = without_medium(media, material.medium);
+        if point.front {
+            beyond = with_medium(media, material.medium);
+        }
+        vertex.beyond = beyond;
+        vertex.sides = Interface(ior, ior / medium_ior(beyond));
+    }
+    if vertex.is_receiver {
+        vertex.gloss = gloss_reflectance(material, -dot((*path).direction, point.n_s), vertex.sides);
+        let mean = (vertex.gloss.x + vertex.gloss.y + vertex.gloss.z) / 3.0;
+        // A black base is not worth a choice.
+        vertex.specular_chance = select(1.0, mean, any(material.base > vec3<f32>(0.0)));
+    }
+    return vertex;
 }
 
-/// The number of the path's next choice between reflection and refraction.
-fn next_choice(path: ptr<function, Path>) -> f32 {
-    let choice = (*path).choices;
-    (*path).choices = choice + 1u;
-    if choice == 0u {
-        return (*path).first_choice;
-    }
-    return padded_1(camera_params.sample_index, (*path).seed, choice);
-}
-
-/// Sends the path on from a mirror or a dielectric.
-fn meet_caster(path: ptr<function, Path>, point: SurfacePoint, material_index: u32, material: Material) {
-    let kind = material.kind;
-    var u = 0.0;
-    if kind == MATERIAL_DIELECTRIC {
-        u = next_choice(path);
-    }
-    let ior = material.ior;
-    let eta = select(ior, 1.0 / ior, point.front);
-    let event = scatter_specular(kind, (*path).direction, point.n_g, point.n_s, eta, u);
-    if event.transmitted {
-        // Radiance is squeezed into a narrower cone in a denser medium: L/n² is what stays.
-        (*path).beta *= material.tint * (eta * eta);
-        (*path).medium = select(NONE, material_index, point.front);
-    } else if kind == MATERIAL_MIRROR {
-        (*path).beta *= material.reflectance;
-    }
-    (*path).origin = leave(point, event.direction);
-    (*path).direction = event.direction;
-}
-
-/// The light that the first draw of this sample chooses.
-fn choose_light(u: f32) -> u32 {
-    var light = 0u;
-    while light + 1u < camera_params.light_count && u >= load_light(light).cumulative_probability {
-        light += 1u;
-    }
-    return light;
-}
-
-/// Turns the path into a shadow ray toward a point of one light.
-fn aim_at_light(path: ptr<function, Path>, point: SurfacePoint, material: Material) {
-    let index = choose_light(padded_1(camera_params.sample_index, (*path).seed, SLOT_LIGHT));
-    let light = load_light(index);
-    let before = select(0.0, load_light(max(index, 1u) - 1u).cumulative_probability, index > 0u);
-    let probability = light.cumulative_probability - before;
-    let u = padded_2(camera_params.sample_index, (*path).seed, SLOT_LIGHT_POINT);
-    let to_light = sample_sphere_cone(light.center, light.radius, point.position, u);
-    let cos_light = dot(to_light.direction, point.n_s);
-    if to_light.solid_angle <= 0.0 || probability <= 0.0 || cos_light <= 0.0 || dot(to_light.direction, point.n_g) <= 0.0 {
-        return;
-    }
-    let reflected = receiver_bsdf(material, to_light.direction, -(*path).direction, point.n_s);
-    (*path).unblocked = (*path).beta * reflected * light.radiance * (cos_light * to_light.solid_angle / probability);
-    (*path).is_shadow_ray = true;
-    (*path).origin = leave(point, to_light.direction);
-    (*path).direction = to_light.direction;
-    (*path).length = SHADOW_RAY_LENGTH * to_light.distance;
+/// Adds what the surface itself shines, but for what next-event estimation has counted.
+fn add_emission(path: ptr<function, Path>, vertex: Vertex, t: f32) {
+    let emission = vertex.material.emission;
+    let cos_light = -dot((*path).direction, vertex.point.n_g);
+    let light_pdf = vertex.material.emission_pdf_area * t * t / max(cos_light, 1e-6);
+    let pdf = (*path).lobe_pdf;
+    let weight = select(1.0, pdf / (pdf + light_pdf), pdf > 0.0);
+    let counts = vertex.point.front && !(*path).lights_counted;
+    (*path).radiance += select(vec3<f32>(0.0), (*path).beta * emission * weight, counts);
 }
 
 /// Irradiance in a texel of the energy maps, W/m².
@@ -138,57 +154,209 @@ fn map_irradiance(texel: u32) -> vec3<f32> {
     return textureLoad(irradiance, record_texel(texel), 0).xyz;
 }
 
-/// Shades a receiver: ambient light, the caustics in its map, and one light's point, which the next ray tests.
-fn meet_receiver(path: ptr<function, Path>, hit: Hit, triangle: Triangle, point: SurfacePoint, material: Material) {
-    let place = footprint(hit, triangle.object, point.front);
+/// Adds ambient light and what the receiver's energy map holds.
+fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
+    let place = footprint(hit, object, vertex.point.front);
     let caustic = place.weights.x * map_irradiance(place.texels.x) + place.weights.y * map_irradiance(place.texels.y)
         + place.weights.z * map_irradiance(place.texels.z) + place.weights.w * map_irradiance(place.texels.w);
-    (*path).radiance += (*path).beta * material.reflectance / PI * caustic;
-    if material.kind == MATERIAL_PHONG {
-        (*path).radiance += (*path).beta * material.ambient * camera_params.ambient;
+    var sent = vertex.material.base / PI * (1.0 - vertex.gloss) * caustic;
+    if vertex.kind == MATERIAL_PHONG {
+        sent += vertex.material.tint * camera_params.ambient;
     }
-    if camera_params.light_count > 0u {
-        aim_at_light(path, point, material);
+    (*path).radiance += (*path).beta * sent;
+}
+
+/// Turns one light's point into a shadow ray, with what it brings by the base and by a rough specular lobe.
+fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
+    let slot = SLOT_VERTEX + 8u * (*path).gathered;
+    (*path).gathered += 1u;
+    let point = vertex.point;
+    let u_light = padded_1(camera_params.sample_index, (*path).seed, slot);
+    let u = padded_2(camera_params.sample_index, (*path).seed, slot + 1u);
+    let light = illuminate(camera_params.light_count, point.position, u_light, u);
+    let wi = light.direction;
+    let wo = -(*path).direction;
+    let cos_light = dot(wi, point.n_s);
+    let side = dot(wi, point.n_g);
+    let transmitted = side < 0.0;
+    var reflected = vec3<f32>(0.0);
+    if vertex.is_receiver && cos_light > 0.0 && side > 0.0 {
+        reflected = base_bsdf(vertex.material, wi, wo, point.n_s, vertex.sides) * (1.0 - vertex.gloss) * cos_light;
+    }
+    // Light that casters send on after a receiver belongs to that receiver's map.
+    let lobe_counts = !(vertex.is_caster && (*path).lights_counted) && (cos_light < 0.0) == transmitted;
+    let lobe = evaluate_specular(vertex.material, wo, wi, point.n_s, vertex.sides);
+    let lobe_pdf = lobe.pdf * vertex.specular_chance;
+    let weight = select(1.0, light.pdf / (light.pdf + lobe_pdf), light.pdf > 0.0);
+    reflected += select(vec3<f32>(0.0), lobe.value * weight, lobe_counts);
+    var media = (*path).media;
+    if transmitted {
+        media = vertex.beyond;
+    }
+    let brought = (*path).beta * reflected * light.arriving * transmittance(media, light.distance);
+    if any(brought > vec3<f32>(0.0)) {
+        (*path).shadow_pending = true;
+        (*path).shadow_origin = leave(point, wi);
+        (*path).shadow_direction = wi;
+        (*path).shadow_length = select(SHADOW_RAY_LENGTH * light.distance, FAR, light.distance >= FAR);
+        (*path).unblocked = brought;
     }
 }
 
-/// Lets a path meet the triangle at `hit`; returns whether another ray follows.
-fn meet_surface(path: ptr<function, Path>, hit: Hit) -> bool {
-    let triangle = load_triangle(hit.triangle);
-    let point = surface_point(hit, triangle, (*path).direction);
-    let material = load_material(triangle.material);
-    let kind = material.kind;
-    if kind == MATERIAL_MIRROR || kind == MATERIAL_DIELECTRIC {
-        meet_caster(path, point, triangle.material, material);
-        (*path).depth += 1u;
-        return (*path).depth < camera_params.max_depth;
-    }
-    meet_receiver(path, hit, triangle, point, material);
-    return (*path).is_shadow_ray;
-}
-
-/// Lets a path see what lies along its ray; returns whether another ray follows.
-fn advance(path: ptr<function, Path>) -> bool {
-    let is_shadow_ray = (*path).is_shadow_ray;
-    let light = nearest_light(camera_params.light_count, (*path).origin, (*path).direction, (*path).length);
-    let hit = trace((*path).origin, (*path).direction, light.t, is_shadow_ray);
-    let met_light = light.t < (*path).length;
-    if is_shadow_ray {
-        if hit.triangle == NONE && !met_light {
-            (*path).radiance += (*path).unblocked;
+/// Sends the path on through the specular lobe.
+fn go_on_specular(path: ptr<function, Path>, vertex: Vertex, u: f32, choice: u32) {
+    let d = (*path).direction;
+    let point = vertex.point;
+    let v = padded_2(camera_params.sample_index, (*path).seed, SLOT_MICROFACET + 2u * choice);
+    let event = scatter_specular(vertex.material, d, point.n_g, point.n_s, vertex.sides, u, v);
+    (*path).beta *= event.weight / vertex.specular_chance;
+    if event.transmitted {
+        if vertex.kind == MATERIAL_DIELECTRIC {
+            // Radiance is squeezed into a narrower cone in a denser medium: L/n² is what stays.
+            (*path).beta *= vertex.sides.eta * vertex.sides.eta;
         }
-        return false;
+        (*path).media = vertex.beyond;
+    }
+    (*path).lobe_pdf = evaluate_specular(vertex.material, -d, event.direction, point.n_s, vertex.sides).pdf * vertex.specular_chance;
+    // A receiver's own gloss takes what it meets; only a caster's belongs to the map of a receiver before it.
+    (*path).lights_counted = (*path).lights_counted && vertex.is_caster;
+    (*path).origin = leave(point, event.direction);
+    (*path).direction = event.direction;
+    (*path).goes_on = any((*path).beta > vec3<f32>(0.0));
+}
+
+/// Sends the path on from the base, in proportion to the cosine.
+fn go_on_diffuse(path: ptr<function, Path>, vertex: Vertex) {
+    let slot = SLOT_VERTEX + 8u * ((*path).gathered - 1u);
+    let point = vertex.point;
+    let u = padded_2(camera_params.sample_index, (*path).seed, slot + 3u);
+    let wi = cosine_hemisphere(point.n_s, u);
+    let toward_wi = 1.0 - gloss_reflectance(vertex.material, dot(wi, point.n_s), vertex.sides);
+    (*path).beta *= vertex.material.base * (1.0 - vertex.gloss) * toward_wi / (1.0 - vertex.specular_chance);
+    (*path).lobe_pdf = 0.0;
+    (*path).lights_counted = true;
+    (*path).origin = leave(point, wi);
+    (*path).direction = wi;
+    (*path).goes_on = dot(wi, point.n_g) > 0.0 && any((*path).beta > vec3<f32>(0.0));
+}
+
+/// Ends the path by chance in proportion to what it can still bring.
+fn play_roulette(path: ptr<function, Path>) {
+    let beta = (*path).beta;
+    let chance = min(max(beta.x, max(beta.y, beta.z)) / camera_params.exposure, 1.0);
+    let slot = SLOT_VERTEX + 8u * ((*path).gathered - 1u);
+    if padded_1(camera_params.sample_index, (*path).seed, slot + 5u) < chance {
+        (*path).beta = beta / chance;
+    } else {
+        (*path).goes_on = false;
+    }
+}
+
+/// Lets a path meet the triangle at `hit`.
+fn meet_surface(path: ptr<function, Path>, hit: Hit) {
+    let triangle = load_triangle(hit.triangle);
+    let vertex = vertex_at(path, hit, triangle);
+    if vertex.kind == MATERIAL_DIELECTRIC && vertex.beyond.x == (*path).media.x {
+        // A boundary within something of higher rank does not exist, but it blocks shadow rays.
+        (*path).media = vertex.beyond;
+        (*path).origin = leave(vertex.point, (*path).direction);
+        (*path).lobe_pdf = 0.0;
+        (*path).depth += 1u;
+        (*path).goes_on = (*path).depth < camera_params.max_depth;
+        return;
+    }
+    add_emission(path, vertex, hit.t);
+    if vertex.is_receiver {
+        add_map(path, vertex, hit, triangle.object);
+    }
+    let gathers = vertex.is_receiver || vertex.material.gloss > 0.0;
+    if gathers && camera_params.light_count > 0u {
+        gather_light(path, vertex);
+    } else if gathers {
+        (*path).gathered += 1u;
+    }
+    (*path).goes_on = false;
+    if !vertex.is_caster && !vertex.is_receiver {
+        return;
+    }
+    var u = 0.0;
+    var choice = (*path).choices;
+    if vertex.kind != MATERIAL_MIRROR {
+        u = padded_1(camera_params.sample_index, (*path).seed, choice);
+        u = select(u, (*path).first_choice, choice == 0u);
+        (*path).choices += 1u;
+    }
+    let takes_specular = u < vertex.specular_chance;
+    if takes_specular && vertex.is_receiver {
+        // What chose the lobe chooses nothing more.
+        u = 0.0;
+    }
+    if takes_specular {
+        go_on_specular(path, vertex, u, choice);
+    } else {
+        go_on_diffuse(path, vertex);
+    }
+    if takes_specular && vertex.is_caster {
+        (*path).depth += 1u;
+        (*path).goes_on = (*path).goes_on && (*path).depth < camera_params.max_depth;
+    } else {
+        (*path).bounces += 1u;
+        (*path).goes_on = (*path).goes_on && (*path).bounces <= camera_params.max_bounces;
+        play_roulette(path);
+    }
+}
+
+/// Lets a path end on a sphere that shines.
+fn meet_sphere(path: ptr<function, Path>, sphere: SphereHit) {
+    (*path).goes_on = false;
+    let light = load_light(sphere.light);
+    let solid_angle = 2.0 * PI * cone_height(light.extent / distance((*path).origin, light.position));
+    let pdf = (*path).lobe_pdf;
+    let weight = select(1.0, pdf / (pdf + light_probability(sphere.light) / solid_angle), pdf > 0.0);
+    let seen = (*path).beta * transmittance((*path).media, sphere.t) * light.strength * weight;
+    (*path).radiance += select(seen, vec3<f32>(0.0), (*path).lights_counted);
+}
+
+/// Lets a path leave the scene.
+fn meet_sky(path: ptr<function, Path>) {
+    (*path).goes_on = false;
+    var beyond = camera_params.background;
+    if !(*path).lights_counted {
+        beyond += sky_radiance(camera_params.first_sky_light, camera_params.light_count, (*path).direction, (*path).lobe_pdf);
+    }
+    (*path).radiance += (*path).beta * beyond;
+}
+
+/// Traces the path's shadow ray, then the ray along which it goes on, and lets it meet what is there.
+fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
+    var hit = Hit(NONE, FAR, vec2<f32>(0.0));
+    var sphere = SphereHit(0u, FAR);
+    // Both legs by one call, for calls are inlined; a path without shadow ray takes its only leg beside the first of others.
+    var leg = select(1u, 0u, (*path).shadow_pending);
+    let legs = select(1u, 2u, (*path).goes_on);
+    for (; leg < legs; leg++) {
+        let is_shadow_ray = leg == 0u;
+        let origin = select((*path).origin, (*path).shadow_origin, is_shadow_ray);
+        let direction = select((*path).direction, (*path).shadow_direction, is_shadow_ray);
+        let length = select(FAR, (*path).shadow_length, is_shadow_ray);
+        sphere = nearest_sphere(camera_params.sphere_count, origin, direction, length);
+        hit = trace(origin, direction, sphere.t, is_shadow_ray);
+        *rays += 1u;
+        let visible = is_shadow_ray && hit.triangle == NONE && sphere.t >= length;
+        (*path).radiance += select(vec3<f32>(0.0), (*path).unblocked, visible);
+    }
+    (*path).shadow_pending = false;
+    if !(*path).goes_on {
+        return;
     }
     if hit.triangle != NONE {
-        (*path).beta *= transmittance((*path).medium, hit.t);
-        return meet_surface(path, hit);
-    }
-    if met_light {
-        (*path).radiance += (*path).beta * transmittance((*path).medium, light.t) * load_light(light.light).radiance;
+        (*path).beta *= transmittance((*path).media, hit.t);
+        meet_surface(path, hit);
+    } else if sphere.t < FAR {
+        meet_sphere(path, sphere);
     } else {
-        (*path).radiance += (*path).beta * camera_params.background;
+        meet_sky(path);
     }
-    return false;
 }
 
 /// The pixel of an invocation: along a Z-order curve within its 8 × 8 tile, so that neighbouring lanes see alike.
@@ -210,11 +378,11 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     var rays = 0u;
     var finished = false;
     loop {
-        rays += 1u;
-        if !advance(&path) {
+        if !path.shadow_pending && !path.goes_on {
             finished = true;
             break;
         }
+        advance(&path, &rays);
     }
     if !finished {
         atomicAdd(&film.unfinished, 1u);

@@ -1,20 +1,26 @@
 // Phase 1: photons leave the lights and fill the energy maps. docs/photon-paths.md defines each step.
 
-import package::bsdf::specular::{adjoint_factor, scatter_specular};
+import package::bsdf::base::gloss_reflectance;
+import package::bsdf::specular::{adjoint_factor, outer_interface, scatter_specular, Interface};
 import package::emitter::emission::emit;
-import package::emitter::sphere::nearest_light;
+import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
 import package::layout::records::{load_material, load_triangle};
-import package::geometry::surface::{leave, surface_point};
+import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
     energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS,
 };
-import package::layout::scene::{MATERIAL_DIELECTRIC, MATERIAL_MIRROR, NONE};
-import package::medium::absorption::transmittance;
-import package::sampling::sobol::{padded_1, sobol_5};
+import package::layout::scene::{
+    Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, NONE,
+};
+import package::medium::media::{medium_ior, transmittance, with_medium, without_medium};
+import package::sampling::sobol::{padded_1, padded_2, sobol_5};
+
+/// First slot of the padded numbers for microfacet normals; choices have those below.
+const SLOT_MICROFACET: u32 = 4096u;
 
 /// A photon in flight.
 struct Photon {
@@ -26,11 +32,11 @@ struct Photon {
     beta: vec3<f32>,
     /// The same in units of the fixed-point sums: what the ledger says the photon still has.
     units: vec3<i32>,
-    /// Material of the medium that it flies in, or NONE.
-    medium: u32,
-    /// Surfaces met.
+    /// The media that it flies in.
+    media: vec4<u32>,
+    /// Casters met.
     depth: u32,
-    /// Choices between reflection and refraction made.
+    /// Choices made.
     choices: u32,
     /// The number of its first choice.
     first_choice: f32,
@@ -65,7 +71,7 @@ fn start_photon(place: u32) -> Photon {
     let beta = emission.flux * photon_params.flux_factor;
     let units = to_units(beta);
     accounts[LEDGER_EMITTED] += units;
-    return Photon(index, emission.origin, emission.direction, beta, units, NONE, 0u, 0u, numbers.fifth);
+    return Photon(index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth);
 }
 
 /// Multiplies a photon's flux; the change goes to `account`.
@@ -75,16 +81,6 @@ fn change_flux(photon: ptr<function, Photon>, factor: vec3<f32>, account: u32) {
     accounts[account] += (*photon).units - units;
     (*photon).beta = beta;
     (*photon).units = units;
-}
-
-/// The number of the photon's next choice between reflection and refraction.
-fn next_choice(photon: ptr<function, Photon>) -> f32 {
-    let choice = (*photon).choices;
-    (*photon).choices = choice + 1u;
-    if choice == 0u {
-        return (*photon).first_choice;
-    }
-    return padded_1((*photon).index, photon_params.seed, choice);
 }
 
 /// Adds flux to the four texels around a hit; their integers sum to `units` exactly.
@@ -108,40 +104,81 @@ fn deposit(hit: Hit, object: u32, front: bool, units: vec3<i32>) {
     deposits += 1u;
 }
 
+/// The number of choice `choice` of a photon.
+fn choice_number(photon: ptr<function, Photon>, choice: u32) -> f32 {
+    let later = padded_1((*photon).index, photon_params.seed, choice);
+    return select(later, (*photon).first_choice, choice == 0u);
+}
+
+/// Lets a photon end on a receiver's base.
+fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
+    // Light that met no caster belongs to the camera pass.
+    if (*photon).depth == 0u {
+        accounts[LEDGER_DIRECT] += (*photon).units;
+    } else {
+        accounts[LEDGER_DEPOSITED] += (*photon).units;
+        deposit(hit, object, front, (*photon).units);
+    }
+}
+
 /// Lets a photon meet the surface at `hit`; returns whether its path goes on.
 fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
     let triangle = load_triangle(hit.triangle);
     let point = surface_point(hit, triangle, d);
     let material = load_material(triangle.material);
-    let kind = material.kind;
-    if kind != MATERIAL_MIRROR && kind != MATERIAL_DIELECTRIC {
-        // Light that met no caster belongs to the camera pass.
-        if (*photon).depth == 0u {
-            accounts[LEDGER_DIRECT] += (*photon).units;
-        } else {
-            accounts[LEDGER_DEPOSITED] += (*photon).units;
-            deposit(hit, triangle.object, point.front, (*photon).units);
+    let kind = material.kind & MATERIAL_KIND_BITS;
+    let is_caster = (material.kind & MATERIAL_CASTER) != 0u;
+    let is_receiver = (material.kind & MATERIAL_RECEIVER) != 0u;
+
+    let media = (*photon).media;
+    let ior = medium_ior(media);
+    var beyond = media;
+    var sides = outer_interface(material, ior);
+    if kind == MATERIAL_DIELECTRIC {
+        beyond = without_medium(media, material.medium);
+        if point.front {
+            beyond = with_medium(media, material.medium);
         }
+        if beyond.x == media.x {
+            // A boundary within something of higher rank does not exist.
+            (*photon).media = beyond;
+            (*photon).origin = leave(point, d);
+            (*photon).depth += 1u;
+            return true;
+        }
+        sides = Interface(ior, ior / medium_ior(beyond));
+    }
+
+    let choice = (*photon).choices;
+    var u = choice_number(photon, choice);
+    (*photon).choices += select(0u, 1u, is_caster && kind != MATERIAL_MIRROR);
+    var gloss_chance = 1.0;
+    if is_receiver {
+        let gloss = gloss_reflectance(material, -dot(d, point.n_s), sides);
+        // The gloss of a receiver that is no caster is the camera pass's; what it takes is lost to the photon.
+        gloss_chance = select(0.0, (gloss.x + gloss.y + gloss.z) / 3.0, is_caster);
+        if u >= gloss_chance {
+            change_flux(photon, (1.0 - gloss) / (1.0 - gloss_chance), LEDGER_ABSORBED);
+            land(photon, hit, triangle.object, point.front);
+            return false;
+        }
+    }
+    if !is_caster {
+        accounts[LEDGER_ABSORBED] += (*photon).units;
         return false;
     }
-    var u = 0.0;
-    if kind == MATERIAL_DIELECTRIC {
-        u = next_choice(photon);
-    }
-    let ior = material.ior;
-    let event = scatter_specular(kind, d, point.n_g, point.n_s, select(ior, 1.0 / ior, point.front), u);
-    if event.transmitted {
-        change_flux(photon, material.tint, LEDGER_ABSORBED);
-        (*photon).medium = select(NONE, triangle.material, point.front);
-    } else if kind == MATERIAL_MIRROR {
-        change_flux(photon, material.reflectance, LEDGER_ABSORBED);
-    }
+    let v = padded_2((*photon).index, photon_params.seed, SLOT_MICROFACET + 2u * choice);
+    let event = scatter_specular(material, d, point.n_g, point.n_s, sides, u, v);
+    change_flux(photon, event.weight / gloss_chance, LEDGER_ABSORBED);
     change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
+    if event.transmitted {
+        (*photon).media = beyond;
+    }
     (*photon).origin = leave(point, event.direction);
     (*photon).direction = event.direction;
     (*photon).depth += 1u;
-    return true;
+    return any((*photon).units != vec3<i32>(0));
 }
 
 fn add_to_ledger(word: u32, value: i32) {
@@ -155,7 +192,7 @@ fn add_to_ledger(word: u32, value: i32) {
 fn close_accounts(rays: u32) {
     for (var account = 0u; account < LEDGER_ACCOUNTS; account++) {
         for (var channel = 0u; channel < 3u; channel++) {
-            add_to_ledger(((photon_params.light * LEDGER_ACCOUNTS + account) * 3u + channel) * 2u, accounts[account][channel]);
+            add_to_ledger(((photon_params.account * LEDGER_ACCOUNTS + account) * 3u + channel) * 2u, accounts[account][channel]);
         }
     }
     if atomicAdd(&ledger.rays_low, rays) > 0xffffffffu - rays {
@@ -185,14 +222,15 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             }
             photon = start_photon(place);
             place += photon_params.lane_count;
-            in_flight = true;
+            in_flight = any(photon.units != vec3<i32>(0));
+            continue;
         }
         if photon.depth >= photon_params.max_depth {
             accounts[LEDGER_CUT_OFF] += photon.units;
             in_flight = false;
             continue;
         }
-        let light = nearest_light(photon_params.light_count, photon.origin, photon.direction, 3.0e38);
+        let light = nearest_sphere(photon_params.sphere_count, photon.origin, photon.direction, 3.0e38);
         let hit = trace(photon.origin, photon.direction, light.t, false);
         rays += 1u;
         let met_light = hit.triangle == NONE && light.t < 3.0e38;
@@ -201,8 +239,8 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             in_flight = false;
             continue;
         }
-        if photon.medium != NONE {
-            change_flux(&photon, transmittance(photon.medium, hit.t), LEDGER_ABSORBED);
+        if photon.media.x != 0u {
+            change_flux(&photon, transmittance(photon.media, hit.t), LEDGER_ABSORBED);
         }
         if met_light {
             accounts[LEDGER_ABSORBED] += photon.units;

@@ -64,7 +64,7 @@ fn incoherent(points: &[Vec3]) -> Vec<Ray> {
 }
 
 fn shadow(scene: &Scene, points: &[Vec3]) -> Vec<Ray> {
-    let LightKind::Sphere { center, .. } = scene.lights[0].kind;
+    let LightKind::Sphere { center, .. } = scene.lights[0].kind else { panic!("the first light is a sphere") };
     let ray = |origin: &Vec3| {
         let toward = center - *origin;
         Ray { origin: *origin, direction: toward.normalize(), t_max: toward.length() }

@@ -1,40 +1,104 @@
-// Casters: mirrors and smooth dielectrics; docs/photon-paths.md, "Flight" 6 to 9.
+// The specular lobe of every material; docs/materials.md.
 
-import package::bsdf::fresnel::refraction;
-import package::layout::scene::MATERIAL_MIRROR;
+import package::bsdf::fresnel::{conductor_reflectance, refraction, schlick};
+import package::bsdf::microfacet::{ggx_density, masking_weight, smith_lambda, visible_normal};
+import package::layout::features::{has_conductors, has_gloss};
+import package::layout::scene::{
+    Material, MATERIAL_COATED, MATERIAL_CONDUCTOR, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR,
+    MATERIAL_THIN_WALLED,
+};
 
-/// A ray that leaves a caster.
+/// The indices on the two sides of an interface.
+struct Interface {
+    /// Index of the medium that the ray comes from.
+    ior: f32,
+    /// That index over the one on the other side.
+    eta: f32,
+}
+
+/// The interface of a material other than a dielectric, which its media define, in a medium of index `ior`.
+fn outer_interface(material: Material, ior: f32) -> Interface {
+    return Interface(ior, ior / max(material.ior, 1e-6));
+}
+
+/// Whether the specular lobe transmits as well.
+fn transmits(kind: u32) -> bool {
+    return kind == MATERIAL_DIELECTRIC || kind == MATERIAL_THIN_WALLED;
+}
+
+/// Reflectance of the specular lobe at an angle of incidence, per channel.
+fn specular_reflectance(material: Material, cos_i: f32, sides: Interface) -> vec3<f32> {
+    let kind = material.kind & MATERIAL_KIND_BITS;
+    if kind == MATERIAL_MIRROR {
+        return material.specular;
+    }
+    if has_conductors && kind == MATERIAL_CONDUCTOR {
+        return conductor_reflectance(cos_i, material.specular / sides.ior, material.extinction / sides.ior);
+    }
+    if has_gloss && kind == MATERIAL_METALLIC_ROUGHNESS {
+        return schlick(cos_i, material.specular);
+    }
+    if kind != MATERIAL_DIELECTRIC && kind != MATERIAL_THIN_WALLED && kind != MATERIAL_COATED {
+        return vec3<f32>(0.0);
+    }
+    let once = refraction(cos_i, sides.eta).reflectance;
+    return vec3<f32>(select(once, 2.0 * once / (1.0 + once), kind == MATERIAL_THIN_WALLED));
+}
+
+/// A ray that leaves through a specular lobe.
 struct SpecularEvent {
     /// Unit direction of flight.
     direction: vec3<f32>,
     /// Whether the ray crossed the surface.
     transmitted: bool,
-    /// The normal about which it turned, on the side it came from.
+    /// The shading normal about which it turned, on the side that it came from.
     normal: vec3<f32>,
+    /// Factor on flux.
+    weight: vec3<f32>,
 }
 
-/// Turns direction `d` at one normal. `eta` is the index of the incident side over that of the other.
-fn turn(kind: u32, d: vec3<f32>, n: vec3<f32>, eta: f32, u: f32) -> SpecularEvent {
-    let cos_i = -dot(d, n);
-    let interface_ = refraction(cos_i, eta);
-    if kind == MATERIAL_MIRROR || u < interface_.reflectance {
-        return SpecularEvent(normalize(d + 2.0 * cos_i * n), false, n);
+/// Turns direction `d` at microfacet normal `m` of a surface of normal `n`.
+fn turn(material: Material, d: vec3<f32>, n: vec3<f32>, m: vec3<f32>, sides: Interface, u: f32) -> SpecularEvent {
+    let kind = material.kind & MATERIAL_KIND_BITS;
+    let cos_i = -dot(d, m);
+    let reflectance = specular_reflectance(material, cos_i, sides);
+    let splits = transmits(kind);
+    if !splits || u < reflectance.x {
+        return SpecularEvent(normalize(d + 2.0 * cos_i * m), false, n, select(reflectance, vec3<f32>(1.0), splits));
     }
-    return SpecularEvent(normalize(eta * d + (eta * cos_i - interface_.cos_t) * n), true, n);
+    if kind == MATERIAL_THIN_WALLED {
+        return SpecularEvent(d, true, n, material.tint);
+    }
+    let cos_t = refraction(cos_i, sides.eta).cos_t;
+    return SpecularEvent(normalize(sides.eta * d + (sides.eta * cos_i - cos_t) * m), true, n, material.tint);
 }
 
-/// Turns direction `d` at the shading normal, or at the geometric one where the first would send it to the wrong side.
-fn scatter_specular(kind: u32, d: vec3<f32>, n_g: vec3<f32>, n_s: vec3<f32>, eta: f32, u: f32) -> SpecularEvent {
+/// Turns direction `d` at the shading normal, or at the geometric one where a smooth surface would send it to the wrong side. `u` chooses
+/// between reflection and transmission, `v` the microfacet.
+fn scatter_specular(
+    material: Material, d: vec3<f32>, n_g: vec3<f32>, n_s: vec3<f32>, sides: Interface, u: f32, v: vec2<f32>,
+) -> SpecularEvent {
+    let alpha = material.gloss;
     var event: SpecularEvent;
     var n = n_s;
+    var m = n_s;
+    if has_gloss && alpha > 0.0 {
+        m = visible_normal(-d, n_s, alpha, v);
+    }
     // A loop rather than two calls: the second turn is rare, and calls are inlined.
     for (var attempt = 0u; attempt < 2u; attempt++) {
-        event = turn(kind, d, n, eta, u);
+        event = turn(material, d, n, m, sides, u);
         let side = dot(event.direction, n_g);
-        if select(side > 0.0, side < 0.0, event.transmitted) {
+        if alpha > 0.0 || select(side > 0.0, side < 0.0, event.transmitted) {
             break;
         }
         n = n_g;
+        m = n_g;
+    }
+    if has_gloss && alpha > 0.0 {
+        let sides_kept = vec2<f32>(dot(event.direction, n_g), dot(event.direction, n_s)) * select(1.0, -1.0, event.transmitted);
+        let masking = masking_weight(-dot(d, n_s), abs(dot(event.direction, n_s)), alpha);
+        event.weight *= select(0.0, masking, all(sides_kept > vec2<f32>(0.0)));
     }
     return event;
 }
@@ -46,4 +110,47 @@ fn adjoint_factor(d: vec3<f32>, n_g: vec3<f32>, event: SpecularEvent) -> f32 {
     let wi_g = abs(dot(d, n_g));
     let wo_s = abs(dot(event.direction, event.normal));
     return (wi_s * wo_g) / (wi_g * wo_s);
+}
+
+/// A lobe's value for two directions.
+struct LobeValue {
+    /// BSDF times |cos θi|, for radiance, 1/sr.
+    value: vec3<f32>,
+    /// Density with which `scatter_specular` draws wi, 1/sr.
+    pdf: f32,
+}
+
+/// The specular lobe of a rough surface from `wo` to `wi`, both pointing away from it; `n` is on the side of `wo`. 0 for a smooth surface.
+fn evaluate_specular(material: Material, wo: vec3<f32>, wi: vec3<f32>, n: vec3<f32>, sides: Interface) -> LobeValue {
+    if !has_gloss {
+        return LobeValue(vec3<f32>(0.0), 0.0);
+    }
+    let alpha = material.gloss;
+    let kind = material.kind & MATERIAL_KIND_BITS;
+    let cos_o = dot(wo, n);
+    let cos_i = dot(wi, n);
+    let transmitted = cos_i < 0.0;
+    let between = select(wo + wi, sides.eta * wo + wi, transmitted);
+    if alpha <= 0.0 || cos_o <= 0.0 || dot(between, between) < 1e-12 || (transmitted && kind != MATERIAL_DIELECTRIC) {
+        return LobeValue(vec3<f32>(0.0), 0.0);
+    }
+    let half_way = normalize(between);
+    let m = select(half_way, -half_way, dot(half_way, n) < 0.0);
+    let wo_m = dot(wo, m);
+    let wi_m = dot(wi, m);
+    if wo_m <= 0.0 || (wi_m < 0.0) != transmitted {
+        return LobeValue(vec3<f32>(0.0), 0.0);
+    }
+    let density = ggx_density(dot(m, n), alpha) / cos_o;
+    let lambda_o = smith_lambda(cos_o, alpha);
+    let g_1 = 1.0 / (1.0 + lambda_o);
+    let g_2 = 1.0 / (1.0 + lambda_o + smith_lambda(cos_i, alpha));
+    let reflectance = specular_reflectance(material, wo_m, sides);
+    if !transmitted {
+        let chance = select(1.0, reflectance.x, kind == MATERIAL_DIELECTRIC);
+        return LobeValue(reflectance * (0.25 * density * g_2), 0.25 * density * g_1 * chance);
+    }
+    let stretch = sides.eta * wo_m + wi_m;
+    let passed = (1.0 - reflectance.x) * density * wo_m * abs(wi_m) / (stretch * stretch);
+    return LobeValue(material.tint * (sides.eta * sides.eta * passed * g_2), passed * g_1);
 }

@@ -1,7 +1,7 @@
 // Spherical emitters.
 
-import package::layout::records::load_light;
-import package::sampling::warp::{frame, PI};
+import package::layout::records::load_sphere;
+import package::sampling::warp::{cone, cone_height, PI};
 
 /// A direction toward a sphere.
 struct TowardLight {
@@ -13,13 +13,6 @@ struct TowardLight {
     solid_angle: f32,
 }
 
-/// 1 − cos α of the cone that a sphere of radius R fills at distance D, without cancellation.
-fn cone_height(radius: f32, distance: f32) -> f32 {
-    let sin_alpha = radius / distance;
-    let sin2 = sin_alpha * sin_alpha;
-    return sin2 / (1.0 + sqrt(max(1.0 - sin2, 0.0)));
-}
-
 /// A direction from `point` evenly within the cone that the sphere fills.
 fn sample_sphere_cone(center: vec3<f32>, radius: f32, point: vec3<f32>, u: vec2<f32>) -> TowardLight {
     let to_center = center - point;
@@ -27,41 +20,35 @@ fn sample_sphere_cone(center: vec3<f32>, radius: f32, point: vec3<f32>, u: vec2<
     if distance <= radius {
         return TowardLight(vec3<f32>(0.0, 1.0, 0.0), 0.0, 0.0);
     }
-    let axis = to_center / distance;
-    let height = cone_height(radius, distance);
-    let z = u.x * height;
-    let cos_theta = 1.0 - z;
-    let sin_theta = sqrt(z * (2.0 - z));
-    let phi = 2.0 * PI * u.y;
-    let basis = frame(axis);
-    let direction = sin_theta * (cos(phi) * basis.tangent + sin(phi) * basis.bitangent) + cos_theta * axis;
-    let offset = distance * sin_theta;
+    let height = cone_height(radius / distance);
+    let toward = cone(to_center / distance, height, u);
+    let offset = distance * toward.sin_theta;
     let half_chord = sqrt(max(radius * radius - offset * offset, 0.0));
-    return TowardLight(direction, distance * cos_theta - half_chord, 2.0 * PI * height);
+    return TowardLight(toward.direction, distance * toward.cos_theta - half_chord, 2.0 * PI * height);
 }
 
-/// A light met by a ray.
-struct LightHit {
+/// A sphere met by a ray.
+struct SphereHit {
     /// Index of the light.
     light: u32,
     /// Distance along the ray, metres.
     t: f32,
 }
 
-/// The nearest light whose outside the ray meets before `t_max`; `t` is `t_max` if there is none.
-fn nearest_light(light_count: u32, origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> LightHit {
-    var hit = LightHit(0u, t_max);
-    for (var i = 0u; i < light_count; i++) {
-        let light = load_light(i);
-        let from_center = origin - light.center;
+/// The nearest of the first lights, which are spheres, whose outside the ray meets before `t_max`; `t` is `t_max` if there is none.
+fn nearest_sphere(sphere_count: u32, origin: vec3<f32>, direction: vec3<f32>, t_max: f32) -> SphereHit {
+    var hit = SphereHit(0u, t_max);
+    for (var i = 0u; i < sphere_count; i++) {
+        let sphere = load_sphere(i);
+        let from_center = origin - sphere.xyz;
         let along = dot(from_center, direction);
         // The vector from the centre to the ray's nearest point keeps its digits where |from_center|² − R² loses them.
         let nearest = from_center - along * direction;
-        let quarter_chord2 = light.radius * light.radius - dot(nearest, nearest);
+        let quarter_chord2 = sphere.w * sphere.w - dot(nearest, nearest);
         if along < 0.0 && quarter_chord2 > 0.0 {
             let t = -along - sqrt(quarter_chord2);
             if t > 0.0 && t < hit.t {
-                hit = LightHit(i, t);
+                hit = SphereHit(i, t);
             }
         }
     }

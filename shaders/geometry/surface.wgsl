@@ -25,6 +25,16 @@ fn largest(v: vec3<f32>) -> f32 {
     return max(abs(v.x), max(abs(v.y), abs(v.z)));
 }
 
+/// How far a ray's origin is moved off a triangle, metres.
+fn offset_length(triangle: Triangle) -> f32 {
+    return OFFSET_PER_METRE * max(largest(triangle.corner), max(largest(triangle.edge_1), largest(triangle.edge_2)));
+}
+
+/// A point of a triangle, moved off it along unit vector `n`.
+fn off_surface(triangle: Triangle, position: vec3<f32>, n: vec3<f32>) -> vec3<f32> {
+    return position + offset_length(triangle) * n;
+}
+
 fn surface_point(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> SurfacePoint {
     let b = hit.barycentric;
     let position = triangle.corner + b.x * triangle.edge_1 + b.y * triangle.edge_2;
@@ -40,8 +50,7 @@ fn surface_point(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> SurfaceP
             n_s = n_g;
         }
     }
-    let extent = max(largest(triangle.corner), max(largest(triangle.edge_1), largest(triangle.edge_2)));
-    return SurfacePoint(position, n_g, n_s, front, OFFSET_PER_METRE * extent);
+    return SurfacePoint(position, n_g, n_s, front, offset_length(triangle));
 }
 
 /// The origin of a ray that leaves the surface along `direction`, off the surface on that side.

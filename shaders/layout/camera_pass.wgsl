@@ -24,7 +24,7 @@ struct CameraParams {
     max_depth: u32,
     /// Ambient radiance of the Phong model, W/(m² sr).
     ambient: vec3<f32>,
-    /// Lights in the scene.
+    /// Lights on the device.
     light_count: u32,
     /// The lens axis that is to the right in the picture, unit length, world frame.
     lens_right: vec3<f32>,
@@ -34,6 +34,16 @@ struct CameraParams {
     lens_up: vec3<f32>,
     /// Height of the picture, pixels.
     height: u32,
+    /// The media that the camera stands in, as keys.
+    media: vec4<u32>,
+    /// Spheres among the lights, which come first.
+    sphere_count: u32,
+    /// The first light that is infinitely far; those after it are too.
+    first_sky_light: u32,
+    /// The diffuse surfaces that a path meets after its first one.
+    max_bounces: u32,
+    /// Factor on everything seen: 1/n² in a medium of index n.
+    exposure: f32,
     /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
     filter_inverse_cdf: array<vec4<f32>, 16>,
 }

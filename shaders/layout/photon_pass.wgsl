@@ -1,15 +1,15 @@
 // Bind groups 1 and 2 of the photon pass.
 
-/// The most aim discs that a light has.
-const MAX_AIM_DISCS: u32 = 16u;
+/// The most targets that a light aims at.
+const MAX_AIM_TARGETS: u32 = 16u;
 
-/// A disc that every ray from a light to some casters crosses.
-struct AimDisc {
+/// What a light aims at: for a sphere, a disc that every ray from it to some casters crosses; for other lights, a bounding sphere of casters.
+struct AimTarget {
     /// Centre, metres, world frame.
     center: vec3<f32>,
     /// Radius, metres.
     radius: f32,
-    /// Unit normal, pointing away from the light.
+    /// Unit normal of a disc, pointing away from the light.
     axis: vec3<f32>,
     /// Unused.
     padding: u32,
@@ -29,27 +29,29 @@ struct PhotonParams {
     seed: u32,
     /// The most surfaces that a photon meets before it is cut off.
     max_depth: u32,
-    /// Aim discs in use; 0 for light emitted in every direction.
-    aim_disc_count: u32,
+    /// Targets in use; 0 for a sphere that emits in every direction.
+    target_count: u32,
     /// 1 if `order` applies.
     ordered: u32,
     /// Units of the fixed-point sums in a watt.
     units_per_watt: f32,
     /// Factor on every photon's flux: 1 / (the light's share of all photons).
     flux_factor: f32,
-    /// Lights in the scene.
-    light_count: u32,
-    /// Unused.
-    padding_0: u32,
-    /// Flux Φ of the light, W.
-    flux: vec3<f32>,
-    /// Unused.
-    padding_1: u32,
+    /// Spheres among the lights, which come first.
+    sphere_count: u32,
+    /// Index of the light's accounts in the ledger.
+    account: u32,
+    /// The media that the light stands in, as keys.
+    media: vec4<u32>,
+    /// Centre of a sphere around everything, metres.
+    scene_center: vec3<f32>,
+    /// Its radius, metres.
+    scene_radius: f32,
     /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
     /// at neighbouring points.
     order: array<vec4<u32>, 8>,
-    /// The light's aim discs.
-    aim_discs: array<AimDisc, 16>,
+    /// What the light aims at.
+    targets: array<AimTarget, 16>,
 }
 
 const LEDGER_EMITTED: u32 = 0u;

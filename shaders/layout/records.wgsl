@@ -1,8 +1,8 @@
 // Records of the scene's textures.
 
 import package::layout::scene::{
-    corners, lights, materials, nodes, objects, triangles, BvhNode, Material, Object, SphereLight, Triangle, TriangleCorners,
-    RECORDS_WIDTH_BITS,
+    corners, emitting_triangles, environment, lights, materials, nodes, objects, triangles, BvhNode, Light, Material, Object, Triangle,
+    TriangleCorners, RECORDS_WIDTH_BITS,
 };
 
 /// The place of a texel, counted row by row.
@@ -52,24 +52,57 @@ fn load_material(index: u32) -> Material {
     let texel_0 = textureLoad(materials, record_texel(first), 0);
     let texel_1 = bitcast<vec4<f32>>(textureLoad(materials, record_texel(first + 1u), 0));
     let texel_2 = bitcast<vec4<f32>>(textureLoad(materials, record_texel(first + 2u), 0));
-    let texel_3 = bitcast<vec4<f32>>(textureLoad(materials, record_texel(first + 3u), 0));
+    let texel_3 = textureLoad(materials, record_texel(first + 3u), 0);
     let texel_4 = bitcast<vec4<f32>>(textureLoad(materials, record_texel(first + 4u), 0));
     return Material(
         bitcast<vec3<f32>>(texel_0.xyz), texel_0.w,
         texel_1.xyz, texel_1.w,
         texel_2.xyz, texel_2.w,
-        texel_3.xyz, 0u,
-        texel_4.xyz, 0u,
+        bitcast<vec3<f32>>(texel_3.xyz), texel_3.w,
+        texel_4.xyz, texel_4.w,
     );
 }
 
-/// The absorption coefficient alone of a material, 1/m.
+/// The index of refraction alone of a material.
+fn load_ior(index: u32) -> f32 {
+    return bitcast<f32>(textureLoad(materials, record_texel(5u * index + 1u), 0).w);
+}
+
+/// The absorption coefficient alone of a dielectric, 1/m.
 fn load_absorption(index: u32) -> vec3<f32> {
     return bitcast<vec3<f32>>(textureLoad(materials, record_texel(5u * index + 2u), 0).xyz);
 }
 
-fn load_light(index: u32) -> SphereLight {
-    let texel_0 = bitcast<vec4<f32>>(textureLoad(lights, record_texel(2u * index), 0));
-    let texel_1 = bitcast<vec4<f32>>(textureLoad(lights, record_texel(2u * index + 1u), 0));
-    return SphereLight(texel_0.xyz, texel_0.w, texel_1.xyz, texel_1.w);
+fn load_light(index: u32) -> Light {
+    let first = 4u * index;
+    let texel_0 = bitcast<vec4<f32>>(textureLoad(lights, record_texel(first), 0));
+    let texel_1 = bitcast<vec4<f32>>(textureLoad(lights, record_texel(first + 1u), 0));
+    let texel_2 = textureLoad(lights, record_texel(first + 2u), 0);
+    let texel_3 = textureLoad(lights, record_texel(first + 3u), 0);
+    return Light(
+        texel_0.xyz, texel_0.w,
+        texel_1.xyz, texel_1.w,
+        bitcast<vec3<f32>>(texel_2.xyz), texel_2.w,
+        bitcast<f32>(texel_3.x), bitcast<f32>(texel_3.y), texel_3.z, texel_3.w,
+    );
+}
+
+/// Centre and radius alone of a sphere, metres.
+fn load_sphere(light: u32) -> vec4<f32> {
+    return bitcast<vec4<f32>>(textureLoad(lights, record_texel(4u * light), 0));
+}
+
+/// Probability with which the camera pass chooses a light up to and including this one.
+fn load_cumulative_probability(light: u32) -> f32 {
+    return bitcast<f32>(textureLoad(lights, record_texel(4u * light + 1u), 0).w);
+}
+
+/// An emitting triangle: the index of the triangle, then as bits the share of its light's area up to and including it.
+fn load_emitting_triangle(entry: u32) -> vec2<u32> {
+    return textureLoad(emitting_triangles, record_texel(entry), 0).xy;
+}
+
+/// A texel of the environment's record.
+fn load_environment(index: u32) -> vec4<f32> {
+    return bitcast<vec4<f32>>(textureLoad(environment, record_texel(index), 0));
 }

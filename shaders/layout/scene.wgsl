@@ -60,46 +60,75 @@ struct Object {
     map_layers: u32,
 }
 
-/// What a surface does to light. Which fields count depends on `kind`.
+/// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
 struct Material {
-    /// Diffuse albedo, Phong's diffuse share or a mirror's reflectance.
-    reflectance: vec3<f32>,
-    /// One of the MATERIAL_ constants.
+    /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss.
+    base: vec3<f32>,
+    /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
     kind: u32,
-    /// Factor on light that crosses a dielectric's boundary.
-    tint: vec3<f32>,
-    /// Index of refraction.
-    ior: f32,
-    /// Absorption coefficient of a dielectric's interior, 1/m.
-    absorption: vec3<f32>,
-    /// Exponent of Phong's specular lobe.
-    shininess: f32,
-    /// Phong's specular share.
+    /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share.
     specular: vec3<f32>,
-    /// Unused.
-    padding_0: u32,
-    /// Phong's factor on ambient light.
-    ambient: vec3<f32>,
-    /// Unused.
-    padding_1: u32,
+    /// Index of refraction; exponent of Phong's specular lobe.
+    ior: f32,
+    /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index.
+    extinction: vec3<f32>,
+    /// Width α of the microfacets' distribution, 0 for a smooth surface.
+    gloss: f32,
+    /// Factor on light that is transmitted; Phong's factor on ambient light.
+    tint: vec3<f32>,
+    /// A dielectric's key in lists of media: its rank plus 1 in the upper half, its material's index in the lower.
+    medium: u32,
+    /// Radiance of the front, W/(m² sr).
+    emission: vec3<f32>,
+    /// Density with which next-event estimation chooses a point of the surface, 1/m²; 0 without emission.
+    emission_pdf_area: f32,
 }
 
-/// A spherical emitter.
-struct SphereLight {
-    /// Centre, metres, world frame.
-    center: vec3<f32>,
-    /// Radius, metres.
-    radius: f32,
-    /// Radiance, W/(m² sr).
-    radiance: vec3<f32>,
+/// An emitter. Which fields count depends on `kind`.
+struct Light {
+    /// Centre or position, metres; of a distant light the unit direction toward it. World frame.
+    position: vec3<f32>,
+    /// Radius of a sphere, metres; area of a surface, m²; of a distant disc 1 − cos of its angular radius, 0 for parallel light.
+    extent: f32,
+    /// Radiance, W/(m² sr), or of points and spots intensity, W/sr, or of parallel light irradiance, W/m²; factor on an environment's radiance.
+    strength: vec3<f32>,
     /// Probability with which the camera pass chooses a light up to and including this one.
     cumulative_probability: f32,
+    /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+    axis: vec3<f32>,
+    /// One of the LIGHT_ constants.
+    kind: u32,
+    /// Cosine of the angle up to which a spot shines fully.
+    cos_inner: f32,
+    /// Cosine of the angle beyond which a spot is dark.
+    cos_outer: f32,
+    /// A surface's first entry among the emitting triangles; an environment's width, texels.
+    first: u32,
+    /// A surface's number of emitting triangles; an environment's height, texels.
+    count: u32,
 }
 
 const MATERIAL_DIFFUSE: u32 = 0u;
 const MATERIAL_PHONG: u32 = 1u;
 const MATERIAL_MIRROR: u32 = 2u;
 const MATERIAL_DIELECTRIC: u32 = 3u;
+const MATERIAL_CONDUCTOR: u32 = 4u;
+const MATERIAL_THIN_WALLED: u32 = 5u;
+const MATERIAL_COATED: u32 = 6u;
+const MATERIAL_METALLIC_ROUGHNESS: u32 = 7u;
+/// The bits of `Material::kind` that tell the kind.
+const MATERIAL_KIND_BITS: u32 = 0xffu;
+/// Set where light that meets the surface is sent on by photons.
+const MATERIAL_CASTER: u32 = 0x100u;
+/// Set where the surface has a diffuse lobe and an energy map.
+const MATERIAL_RECEIVER: u32 = 0x200u;
+
+const LIGHT_SPHERE: u32 = 0u;
+const LIGHT_POINT: u32 = 1u;
+const LIGHT_SPOT: u32 = 2u;
+const LIGHT_SURFACE: u32 = 3u;
+const LIGHT_DISTANT: u32 = 4u;
+const LIGHT_ENVIRONMENT: u32 = 5u;
 
 /// Marks the absence of an index.
 const NONE: u32 = 0xffffffffu;
@@ -118,5 +147,11 @@ const RECORDS_WIDTH_BITS: u32 = 13u;
 @group(0) @binding(3) var objects: texture_2d<u32>;
 /// Material records of 5 texels, floating-point numbers as their bits.
 @group(0) @binding(4) var materials: texture_2d<u32>;
-/// SphereLight records of 2 texels, floating-point numbers as their bits.
+/// Light records of 4 texels, floating-point numbers as their bits: first spheres, last distant lights and the environment.
 @group(0) @binding(5) var lights: texture_2d<u32>;
+/// Emitting triangles, a texel each, light by light: index of the triangle, and as bits the share of the light's area up to and including it.
+@group(0) @binding(6) var emitting_triangles: texture_2d<u32>;
+/// The environment, floating-point numbers as their bits. First a texel for each row of its picture: the probability of a row up to and
+/// including it. Then the picture, row by row from the top: radiance, W/(m² sr), and the probability, within the row, of a column up to
+/// and including this one.
+@group(0) @binding(7) var environment: texture_2d<u32>;

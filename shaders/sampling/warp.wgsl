@@ -31,3 +31,37 @@ fn disc(u: vec2<f32>) -> vec2<f32> {
     let phi = select(0.5 * PI - 0.25 * PI * (a / b), 0.25 * PI * (b / a), wide);
     return r * vec2<f32>(cos(phi), sin(phi));
 }
+
+/// 1 − cos α of a cone of sine `sin_alpha`, without cancellation.
+fn cone_height(sin_alpha: f32) -> f32 {
+    let sin2 = sin_alpha * sin_alpha;
+    return sin2 / (1.0 + sqrt(max(1.0 - sin2, 0.0)));
+}
+
+/// A direction within a cone.
+struct ConeSample {
+    /// Unit direction.
+    direction: vec3<f32>,
+    /// Cosine of its angle to the axis.
+    cos_theta: f32,
+    /// Sine of that angle.
+    sin_theta: f32,
+}
+
+/// A direction evenly within the cone around unit vector `axis` whose 1 − cos is `height`; with 2, any direction.
+fn cone(axis: vec3<f32>, height: f32, u: vec2<f32>) -> ConeSample {
+    let z = u.x * height;
+    let cos_theta = 1.0 - z;
+    let sin_theta = sqrt(z * (2.0 - z));
+    let phi = 2.0 * PI * u.y;
+    let basis = frame(axis);
+    let direction = sin_theta * (cos(phi) * basis.tangent + sin(phi) * basis.bitangent) + cos_theta * axis;
+    return ConeSample(direction, cos_theta, sin_theta);
+}
+
+/// A direction around unit vector `n`, in proportion to its cosine.
+fn cosine_hemisphere(n: vec3<f32>, u: vec2<f32>) -> vec3<f32> {
+    let xy = disc(u);
+    let basis = frame(n);
+    return normalize(xy.x * basis.tangent + xy.y * basis.bitangent + sqrt(max(1.0 - dot(xy, xy), 0.0)) * n);
+}

@@ -107,47 +107,59 @@ shared_structs! {
         /// 1, or 2 where front and back are kept apart.
         map_layers: u32,
     }
-    /// What a surface does to light. Which fields count depends on `kind`.
+    /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
     struct Material {
-        /// Diffuse albedo, Phong's diffuse share or a mirror's reflectance.
-        reflectance: [f32; 3],
-        /// One of the MATERIAL_ constants.
+        /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss.
+        base: [f32; 3],
+        /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
         kind: u32,
-        /// Factor on light that crosses a dielectric's boundary.
-        tint: [f32; 3],
-        /// Index of refraction.
-        ior: f32,
-        /// Absorption coefficient of a dielectric's interior, 1/m.
-        absorption: [f32; 3],
-        /// Exponent of Phong's specular lobe.
-        shininess: f32,
-        /// Phong's specular share.
+        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share.
         specular: [f32; 3],
-        /// Unused.
-        padding_0: u32,
-        /// Phong's factor on ambient light.
-        ambient: [f32; 3],
-        /// Unused.
-        padding_1: u32,
+        /// Index of refraction; exponent of Phong's specular lobe.
+        ior: f32,
+        /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index.
+        extinction: [f32; 3],
+        /// Width α of the microfacets' distribution, 0 for a smooth surface.
+        gloss: f32,
+        /// Factor on light that is transmitted; Phong's factor on ambient light.
+        tint: [f32; 3],
+        /// A dielectric's key in lists of media: its rank plus 1 in the upper half, its material's index in the lower.
+        medium: u32,
+        /// Radiance of the front, W/(m² sr).
+        emission: [f32; 3],
+        /// Density with which next-event estimation chooses a point of the surface, 1/m²; 0 without emission.
+        emission_pdf_area: f32,
     }
-    /// A spherical emitter.
-    struct SphereLight {
-        /// Centre, metres, world frame.
-        center: [f32; 3],
-        /// Radius, metres.
-        radius: f32,
-        /// Radiance, W/(m² sr).
-        radiance: [f32; 3],
+    /// An emitter. Which fields count depends on `kind`.
+    struct Light {
+        /// Centre or position, metres; of a distant light the unit direction toward it. World frame.
+        position: [f32; 3],
+        /// Radius of a sphere, metres; area of a surface, m²; of a distant disc 1 − cos of its angular radius, 0 for parallel light.
+        extent: f32,
+        /// Radiance, W/(m² sr), or of points and spots intensity, W/sr, or of parallel light irradiance, W/m²; factor on an environment's radiance.
+        strength: [f32; 3],
         /// Probability with which the camera pass chooses a light up to and including this one.
         cumulative_probability: f32,
+        /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+        axis: [f32; 3],
+        /// One of the LIGHT_ constants.
+        kind: u32,
+        /// Cosine of the angle up to which a spot shines fully.
+        cos_inner: f32,
+        /// Cosine of the angle beyond which a spot is dark.
+        cos_outer: f32,
+        /// A surface's first entry among the emitting triangles; an environment's width, texels.
+        first: u32,
+        /// A surface's number of emitting triangles; an environment's height, texels.
+        count: u32,
     }
-    /// A disc that every ray from a light to some casters crosses.
-    struct AimDisc {
+    /// What a light aims at: for a sphere, a disc that every ray from it to some casters crosses; for other lights, a bounding sphere of casters.
+    struct AimTarget {
         /// Centre, metres, world frame.
         center: [f32; 3],
         /// Radius, metres.
         radius: f32,
-        /// Unit normal, pointing away from the light.
+        /// Unit normal of a disc, pointing away from the light.
         axis: [f32; 3],
         /// Unused.
         padding: u32,
@@ -166,27 +178,29 @@ shared_structs! {
         seed: u32,
         /// The most surfaces that a photon meets before it is cut off.
         max_depth: u32,
-        /// Aim discs in use; 0 for light emitted in every direction.
-        aim_disc_count: u32,
+        /// Targets in use; 0 for a sphere that emits in every direction.
+        target_count: u32,
         /// 1 if `order` applies.
         ordered: u32,
         /// Units of the fixed-point sums in a watt.
         units_per_watt: f32,
         /// Factor on every photon's flux: 1 / (the light's share of all photons).
         flux_factor: f32,
-        /// Lights in the scene.
-        light_count: u32,
-        /// Unused.
-        padding_0: u32,
-        /// Flux Φ of the light, W.
-        flux: [f32; 3],
-        /// Unused.
-        padding_1: u32,
+        /// Spheres among the lights, which come first.
+        sphere_count: u32,
+        /// Index of the light's accounts in the ledger.
+        account: u32,
+        /// The media that the light stands in, as keys.
+        media: [u32; 4],
+        /// Centre of a sphere around everything, metres.
+        scene_center: [f32; 3],
+        /// Its radius, metres.
+        scene_radius: f32,
         /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
         /// at neighbouring points.
         order: [[u32; 4]; 8],
-        /// The light's aim discs.
-        aim_discs: [AimDisc; MAX_AIM_DISCS as usize],
+        /// What the light aims at.
+        targets: [AimTarget; MAX_AIM_TARGETS as usize],
     }
     /// One dispatch of the camera pass: one sample of every pixel.
     struct CameraParams {
@@ -212,7 +226,7 @@ shared_structs! {
         max_depth: u32,
         /// Ambient radiance of the Phong model, W/(m² sr).
         ambient: [f32; 3],
-        /// Lights in the scene.
+        /// Lights on the device.
         light_count: u32,
         /// The lens axis that is to the right in the picture, unit length, world frame.
         lens_right: [f32; 3],
@@ -222,6 +236,16 @@ shared_structs! {
         lens_up: [f32; 3],
         /// Height of the picture, pixels.
         height: u32,
+        /// The media that the camera stands in, as keys.
+        media: [u32; 4],
+        /// Spheres among the lights, which come first.
+        sphere_count: u32,
+        /// The first light that is infinitely far; those after it are too.
+        first_sky_light: u32,
+        /// The diffuse surfaces that a path meets after its first one.
+        max_bounces: u32,
+        /// Factor on everything seen: 1/n² in a medium of index n.
+        exposure: f32,
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
@@ -281,8 +305,8 @@ shared_structs! {
 
 /// Marks the absence of an index.
 pub const NONE: u32 = u32::MAX;
-/// The most aim discs that a light has.
-pub const MAX_AIM_DISCS: u32 = 16;
+/// The most targets that a light aims at.
+pub const MAX_AIM_TARGETS: u32 = 16;
 /// Width of the textures that hold records, texels, as a power of two.
 pub const RECORDS_WIDTH_BITS: u32 = 13;
 /// Entries of the traversal stack: the deepest BVH that the kernels follow.
@@ -296,8 +320,36 @@ pub mod material_kind {
     pub const PHONG: u32 = 1;
     /// Perfect mirror.
     pub const MIRROR: u32 = 2;
-    /// Smooth dielectric.
+    /// Dielectric boundary.
     pub const DIELECTRIC: u32 = 3;
+    /// Metal.
+    pub const CONDUCTOR: u32 = 4;
+    /// Sheet of glass without thickness.
+    pub const THIN_WALLED: u32 = 5;
+    /// Diffuse base under a clear coat.
+    pub const COATED: u32 = 6;
+    /// glTF's model.
+    pub const METALLIC_ROUGHNESS: u32 = 7;
+    /// Set where light that meets the surface is sent on by photons.
+    pub const CASTER: u32 = 0x100;
+    /// Set where the surface has a diffuse lobe and an energy map.
+    pub const RECEIVER: u32 = 0x200;
+}
+
+/// Values of [`Light::kind`].
+pub mod light_kind {
+    /// Lambertian sphere.
+    pub const SPHERE: u32 = 0;
+    /// Point of even intensity.
+    pub const POINT: u32 = 1;
+    /// Point that shines into a cone.
+    pub const SPOT: u32 = 2;
+    /// Lambertian triangles.
+    pub const SURFACE: u32 = 3;
+    /// Parallel light or a disc in the sky.
+    pub const DISTANT: u32 = 4;
+    /// Light from everywhere.
+    pub const ENVIRONMENT: u32 = 5;
 }
 
 /// Accounts of a light's ledger, in the order of the kernel's sums.
@@ -323,13 +375,25 @@ pub mod ledger {
 /// Constants that both sides know: name in WGSL, value.
 pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
-    ("MAX_AIM_DISCS", MAX_AIM_DISCS),
+    ("MAX_AIM_TARGETS", MAX_AIM_TARGETS),
     ("STACK_SIZE", STACK_SIZE),
     ("RECORDS_WIDTH_BITS", RECORDS_WIDTH_BITS),
     ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
     ("MATERIAL_PHONG", material_kind::PHONG),
     ("MATERIAL_MIRROR", material_kind::MIRROR),
     ("MATERIAL_DIELECTRIC", material_kind::DIELECTRIC),
+    ("MATERIAL_CONDUCTOR", material_kind::CONDUCTOR),
+    ("MATERIAL_THIN_WALLED", material_kind::THIN_WALLED),
+    ("MATERIAL_COATED", material_kind::COATED),
+    ("MATERIAL_METALLIC_ROUGHNESS", material_kind::METALLIC_ROUGHNESS),
+    ("MATERIAL_CASTER", material_kind::CASTER),
+    ("MATERIAL_RECEIVER", material_kind::RECEIVER),
+    ("LIGHT_SPHERE", light_kind::SPHERE),
+    ("LIGHT_POINT", light_kind::POINT),
+    ("LIGHT_SPOT", light_kind::SPOT),
+    ("LIGHT_SURFACE", light_kind::SURFACE),
+    ("LIGHT_DISTANT", light_kind::DISTANT),
+    ("LIGHT_ENVIRONMENT", light_kind::ENVIRONMENT),
     ("LEDGER_EMITTED", ledger::EMITTED),
     ("LEDGER_DEPOSITED", ledger::DEPOSITED),
     ("LEDGER_DIRECT", ledger::DIRECT),

@@ -65,8 +65,8 @@ fn structs_agree() {
 #[test]
 fn a_difference_is_noticed() {
     let module =
-        naga::front::wgsl::parse_str("struct AimDisc { center: vec3<f32>, axis: vec3<f32>, radius: f32 }").unwrap();
-    let shared = SHARED_STRUCTS.iter().find(|s| s.name == "AimDisc").unwrap();
+        naga::front::wgsl::parse_str("struct AimTarget { center: vec3<f32>, axis: vec3<f32>, radius: f32 }").unwrap();
+    let shared = SHARED_STRUCTS.iter().find(|s| s.name == "AimTarget").unwrap();
     assert!(!differences(shared, "made up", &module).is_empty());
 }
 

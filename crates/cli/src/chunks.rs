@@ -38,15 +38,15 @@ pub(crate) fn in_chunks<E>(
     Ok(done)
 }
 
-/// How many photons to emit when `asked` are asked for of `emitters` lights that take turns: equally many from each.
-pub(crate) fn rounded_photons(asked: u64, emitters: u64) -> u64 {
-    asked.next_multiple_of(emitters.max(1))
+/// How many photons to emit when `asked` are asked for and lights take `turns`: each its share exactly.
+pub(crate) fn rounded_photons(asked: u64, turns: u64) -> u64 {
+    asked.next_multiple_of(turns.max(1))
 }
 
-/// Photons in the first chunk: the same power of two from each light.
-pub(crate) fn first_photons(emitters: u64) -> u64 {
-    let emitters = emitters.max(1);
-    emitters << FIRST_PHOTONS.saturating_sub(emitters.ilog2())
+/// Photons in the first chunk: the same power of two for each turn.
+pub(crate) fn first_photons(turns: u64) -> u64 {
+    let turns = turns.max(1);
+    turns << FIRST_PHOTONS.saturating_sub(turns.ilog2())
 }
 
 /// When photons must stop: they take at most half of the time that is left.
@@ -97,13 +97,13 @@ mod tests {
     #[test]
     fn every_light_sends_equally_many_photons() {
         assert_eq!(
-            [1, 2, 3, 0].map(|emitters| rounded_photons(1_000_000, emitters)),
+            [1, 2, 3, 0].map(|turns| rounded_photons(1_000_000, turns)),
             [1_000_000, 1_000_000, 1_000_002, 1_000_000]
         );
         assert_eq!(rounded_photons(0, 5), 0);
-        for emitters in 1..100 {
-            let first = first_photons(emitters);
-            assert!(first.is_multiple_of(emitters) && (first / emitters).is_power_of_two());
+        for turns in 1..100 {
+            let first = first_photons(turns);
+            assert!(first.is_multiple_of(turns) && (first / turns).is_power_of_two());
             assert!(first <= 2 << FIRST_PHOTONS);
         }
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use diacaustic::{Ledger, MapSize, SceneReport, Statistics, scene::Light, scene::Scene, wgpu::AdapterInfo};
+use diacaustic::{Ledger, LightReport, MapSize, SceneReport, Statistics, scene::Scene, wgpu::AdapterInfo};
 use diacaustic_output as output;
 
 use crate::progress::rate;
@@ -34,7 +34,7 @@ pub(crate) struct Report<'r> {
 
 impl Report<'_> {
     pub fn statistics(&self) -> output::Statistics {
-        let lights = self.scene.lights.iter().zip(&self.counted.ledgers);
+        let lights = self.built.lights.iter().zip(&self.counted.ledgers);
         output::Statistics {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scene: self.scene_file.clone(),
@@ -113,11 +113,11 @@ fn adapter(info: &AdapterInfo) -> output::Adapter {
     }
 }
 
-fn light_ledger(light: &Light, ledger: &Ledger, photons: u64) -> output::LightLedger {
+fn light_ledger(light: &LightReport, ledger: &Ledger, photons: u64) -> output::LightLedger {
     let watts = |account| ledger.watts(account, photons).to_array();
     output::LightLedger {
         name: light.name.clone(),
-        flux: light.kind.flux().as_dvec3().to_array(),
+        flux: light.flux.map(f64::from),
         emitted: watts(ledger.emitted),
         deposited: watts(ledger.deposited),
         direct: watts(ledger.direct),
@@ -131,13 +131,11 @@ fn light_ledger(light: &Light, ledger: &Ledger, photons: u64) -> output::LightLe
 
 #[cfg(test)]
 mod tests {
-    use diacaustic::scene::LightKind;
-
     use super::*;
 
     #[test]
     fn ledgers_are_in_watts() {
-        let kind = LightKind::Sphere { center: [0.0; 3].into(), radius: 1.0, flux: [8.0, 4.0, 2.0].into() };
+        let lamp = LightReport { name: "lamp".into(), flux: [8.0, 4.0, 2.0] };
         let ledger = Ledger {
             emitted: [400, 200, 100],
             deposited: [300, 200, 100],
@@ -145,7 +143,7 @@ mod tests {
             units_per_watt: 10.0,
             ..Ledger::default()
         };
-        let told = light_ledger(&Light { name: "lamp".into(), kind }, &ledger, 10);
+        let told = light_ledger(&lamp, &ledger, 10);
         assert_eq!((told.flux, told.emitted), ([8.0, 4.0, 2.0], [4.0, 2.0, 1.0]));
         assert_eq!((told.deposited, told.direct, told.residue), ([3.0, 2.0, 1.0], [1.0, 0.0, 0.01], [0, 0, -1]));
     }

@@ -106,13 +106,13 @@ impl Session {
 
     /// Emits the photons, and says why if no caustic came of them.
     fn emit_photons(&mut self, deadline: Option<Instant>, times: &mut Times) -> Result<(), Error> {
-        if self.built.emits_photons && self.scene.settings.photons > 0 {
-            let emitters = self.emitters()?;
-            let total = rounded_photons(self.scene.settings.photons, emitters);
+        if self.built.photon_turns > 0 && self.scene.settings.photons > 0 {
+            let turns = self.built.photon_turns;
+            let total = rounded_photons(self.scene.settings.photons, turns);
             let deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
             let mut counter = self.progress.count("photons", total);
             let (renderer, gpu) = (&mut self.renderer, &self.gpu);
-            let done = in_chunks(total, first_photons(emitters), deadline, |numbers| {
+            let done = in_chunks(total, first_photons(turns), deadline, |numbers| {
                 let end = numbers.end;
                 renderer.emit_photons(numbers)?;
                 renderer.wait()?;
@@ -127,15 +127,6 @@ impl Session {
             self.progress.warn(warning);
         }
         Ok(())
-    }
-
-    /// Lights that send photons.
-    fn emitters(&self) -> Result<u64, Error> {
-        let mut count = 0;
-        for light in 0..self.scene.lights.len() {
-            count += u64::from(self.renderer.emission(light)?.is_some());
-        }
-        Ok(count)
     }
 
     fn add_samples(&mut self, deadline: Option<Instant>, times: &mut Times) -> Result<(), Error> {

@@ -15,7 +15,7 @@ pub(crate) fn about_photons(
     report: &SceneReport,
     statistics: &Statistics,
 ) -> Vec<String> {
-    if !report.emits_photons {
+    if report.photon_turns == 0 {
         let explained = |warning: &Warning| matches!(warning, Warning::NoCaster | Warning::NoLight | Warning::Dark);
         return if noted.iter().any(explained) { Vec::new() } else { vec![NOT_EMITTED.to_owned()] };
     }
@@ -108,9 +108,9 @@ mod tests {
         material = "glass"
     "#;
 
-    fn about(emits_photons: bool, noted: &[Warning], statistics: &Statistics) -> Vec<String> {
+    fn about(photon_turns: u64, noted: &[Warning], statistics: &Statistics) -> Vec<String> {
         let scene = diacaustic::scene::parse_scene(SCENE, Path::new("."), "scene.toml").unwrap().scene;
-        let report = SceneReport { emits_photons, ..SceneReport::default() };
+        let report = SceneReport { photon_turns, ..SceneReport::default() };
         about_photons(&scene, noted, &report, statistics)
     }
 
@@ -127,22 +127,22 @@ mod tests {
 
     #[test]
     fn a_good_caustic_has_no_warning() {
-        assert!(about(true, &[], &fates(5, 400, 100, 10)).is_empty());
+        assert!(about(1, &[], &fates(5, 400, 100, 10)).is_empty());
     }
 
     #[test]
     fn missed_receivers_are_told_with_the_fate_of_the_light() {
         let missed = fates(0, 400, 600, 0);
-        let [warning] = about(true, &[], &missed).try_into().unwrap();
+        let [warning] = about(1, &[], &missed).try_into().unwrap();
         assert!(warning.starts_with("no caustic formed: none of 100 photons"), "{warning}");
         assert!(warning.contains("40.0 % met such a surface before any glass"), "{warning}");
         assert!(warning.contains("60.0 % left the scene, 0.0 % was absorbed, 0.0 % was cut off"), "{warning}");
-        assert!(about(true, &[Warning::NoReceiver], &missed).is_empty());
+        assert!(about(1, &[Warning::NoReceiver], &missed).is_empty());
     }
 
     #[test]
     fn cut_off_paths_name_the_key_to_raise() {
-        let [warning] = about(true, &[], &fates(5, 0, 0, 25)).try_into().unwrap();
+        let [warning] = about(1, &[], &fates(5, 0, 0, 25)).try_into().unwrap();
         assert!(warning.starts_with("2.5 % of the photons' flux was cut off after 32 surfaces"), "{warning}");
         assert!(warning.contains("raise max_depth"), "{warning}");
     }
@@ -150,8 +150,8 @@ mod tests {
     #[test]
     fn photons_that_were_not_emitted_are_told_once() {
         let none = Statistics::default();
-        assert_eq!(about(false, &[], &none).len(), 1);
-        assert!(about(false, &[Warning::NoCaster], &none).is_empty());
-        assert!(about(true, &[], &none)[0].contains("--photons"));
+        assert_eq!(about(0, &[], &none).len(), 1);
+        assert!(about(0, &[Warning::NoCaster], &none).is_empty());
+        assert!(about(1, &[], &none)[0].contains("--photons"));
     }
 }

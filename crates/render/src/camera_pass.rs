@@ -8,6 +8,7 @@ use crate::{
     energy_map::EnergyMaps,
     film::filter_inverse_cdf,
     gpu::{Binding, Gpu, Purpose, wide},
+    lights::{Lights, media_keys, medium_index},
     random::combine,
 };
 
@@ -48,12 +49,12 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    pub fn new(gpu: &Gpu, pass: &CameraPass, scene: &Scene, maps: &EnergyMaps) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, pass: &CameraPass, scene: &Scene, lights: &Lights, maps: &EnergyMaps) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         Ok(Self {
-            template: template(scene),
+            template: template(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
             outputs_group: gpu.bind_resources(
                 &pass.outputs_layout,
@@ -92,10 +93,12 @@ impl Samples {
     }
 }
 
-fn template(scene: &Scene) -> CameraParams {
+fn template(scene: &Scene, lights: &Lights) -> CameraParams {
     let camera = &scene.camera;
     let settings = &scene.settings;
     let [right, up, forward] = camera.axes();
+    let media = media_keys(scene, camera.position);
+    let index = medium_index(scene, media[0]);
     let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
     let half_width = half_height * settings.width as f32 / settings.height as f32;
     CameraParams {
@@ -110,11 +113,16 @@ fn template(scene: &Scene) -> CameraParams {
         background: scene.background.into(),
         max_depth: settings.max_depth,
         ambient: scene.ambient.into(),
-        light_count: scene.lights.len() as u32,
+        light_count: lights.records.len() as u32,
         lens_right: right.into(),
         width: settings.width,
         lens_up: up.into(),
         height: settings.height,
+        media,
+        sphere_count: lights.sphere_count as u32,
+        first_sky_light: lights.first_sky as u32,
+        max_bounces: settings.max_bounces,
+        exposure: 1.0 / (index * index),
         filter_inverse_cdf: filter_inverse_cdf(settings.filter),
     }
 }

@@ -1,62 +1,96 @@
-//! Where photons are sent: aim discs over the casters and the order of a block's photons.
+//! Where photons are sent: what each light aims at, and the order of a block's photons.
 
-use diacaustic_scene::LightKind;
-use diacaustic_shaders::{AimDisc, MAX_AIM_DISCS};
+use std::f32::consts::{PI, TAU};
+
+use diacaustic_shaders::{AimTarget, MAX_AIM_TARGETS, light_kind};
 use diacaustic_surface::{BoundingSphere, merge_spheres};
 use glam::Vec3;
 
-/// How a light emits its photons; docs/photon-paths.md, "Emission".
+use crate::lights::Emitter;
+
+/// How a light emits its photons; docs/photon-paths.md, "Emission". At most [`MAX_AIM_TARGETS`] targets.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Emission {
-    /// Toward discs that every ray from the light to a caster crosses. At most [`MAX_AIM_DISCS`].
-    Aimed(Vec<AimDisc>),
-    /// In every direction: a caster is too near for discs to pay.
+    /// A sphere, toward discs that every ray from it to a caster crosses.
+    Aimed(Vec<AimTarget>),
+    /// A sphere, in every direction: a caster is too near for discs to pay.
     Unaimed,
+    /// Any other light, toward or across bounding spheres of casters.
+    Toward(Vec<AimTarget>),
 }
 
-/// The nearest that a caster's bounding sphere may come, in sums of radii, for a light to aim at it.
+/// The nearest that a caster's bounding sphere may come, in sums of radii, for a sphere to aim at it.
 const NEAREST_AIM: f32 = 1.05;
 
 impl Emission {
     /// How a light emits in the presence of `casters`; none if there are none.
-    pub fn toward(light: &LightKind, casters: &[BoundingSphere]) -> Option<Self> {
-        let LightKind::Sphere { center, radius, .. } = *light;
-        let spheres = merge_spheres(casters.to_vec(), MAX_AIM_DISCS as usize);
+    pub(crate) fn toward(emitter: &Emitter, casters: &[BoundingSphere]) -> Option<Self> {
+        let spheres = merge_spheres(casters.to_vec(), MAX_AIM_TARGETS as usize);
         if spheres.is_empty() {
             return None;
         }
-        let near = |s: &BoundingSphere| s.center.distance(center) < NEAREST_AIM * (s.radius + radius);
+        let Some(light) = emitter.bounds.filter(|_| emitter.kind() == light_kind::SPHERE) else {
+            let target = |sphere: &BoundingSphere| AimTarget {
+                center: sphere.center.into(),
+                radius: sphere.radius,
+                ..AimTarget::default()
+            };
+            return Some(Self::Toward(spheres.iter().map(target).collect()));
+        };
+        let near = |s: &BoundingSphere| s.center.distance(light.center) < NEAREST_AIM * (s.radius + light.radius);
         if spheres.iter().any(near) {
             return Some(Self::Unaimed);
         }
-        Some(Self::Aimed(spheres.iter().map(|sphere| aim_disc(center, radius, sphere)).collect()))
+        Some(Self::Aimed(spheres.iter().map(|sphere| aim_disc(&light, sphere)).collect()))
+    }
+
+    /// What the light aims at.
+    pub fn targets(&self) -> &[AimTarget] {
+        match self {
+            Self::Aimed(targets) | Self::Toward(targets) => targets,
+            Self::Unaimed => &[],
+        }
     }
 
     /// The most flux that one photon carries, W, for a share 1 of all photons.
-    pub fn largest_photon(&self, light: &LightKind) -> f32 {
-        let LightKind::Sphere { center, radius, flux } = *light;
-        match self {
-            Self::Unaimed => flux.max_element(),
-            Self::Aimed(discs) => {
-                let one = |disc: &AimDisc| {
-                    let distance = Vec3::from(disc.center).distance(center);
-                    let sin2 = (radius / distance).powi(2);
-                    let solid_angle = std::f32::consts::TAU * sin2 / (1.0 + (1.0 - sin2).sqrt());
-                    std::f32::consts::PI * disc.radius * disc.radius * solid_angle
+    pub(crate) fn largest_photon(&self, emitter: &Emitter) -> f32 {
+        let count = self.targets().len() as f32;
+        let widest = |one: &dyn Fn(&AimTarget) -> f32| self.targets().iter().map(one).fold(0.0, f32::max);
+        match (self, emitter.bounds) {
+            (Self::Unaimed, _) => emitter.flux.max_element(),
+            (Self::Aimed(_), Some(light)) => {
+                let one = |disc: &AimTarget| {
+                    let distance = Vec3::from(disc.center).distance(light.center);
+                    PI * disc.radius * disc.radius * TAU * cone_height(light.radius / distance)
                 };
-                let widest = discs.iter().map(one).fold(0.0, f32::max);
-                light.radiance().max_element() * widest * discs.len() as f32
+                emitter.peak * widest(&one) * count
+            }
+            (Self::Toward(_), Some(light)) => {
+                let one = |sphere: &AimTarget| {
+                    let distance = Vec3::from(sphere.center).distance(light.center) - light.radius;
+                    TAU * if distance <= sphere.radius { 2.0 } else { cone_height(sphere.radius / distance) }
+                };
+                emitter.peak * widest(&one) * count
+            }
+            (Self::Aimed(_) | Self::Toward(_), None) => {
+                emitter.peak * widest(&|sphere: &AimTarget| PI * sphere.radius * sphere.radius) * count
             }
         }
     }
 }
 
+/// 1 − cos of the cone of this sine, without cancellation.
+fn cone_height(sine: f32) -> f32 {
+    let sin2 = sine * sine;
+    sin2 / (1.0 + (1.0 - sin2).max(0.0).sqrt())
+}
+
 /// The disc through a sphere's centre that covers the inner tangents of light and sphere.
-fn aim_disc(light: Vec3, light_radius: f32, sphere: &BoundingSphere) -> AimDisc {
-    let toward = sphere.center - light;
+fn aim_disc(light: &BoundingSphere, sphere: &BoundingSphere) -> AimTarget {
+    let toward = sphere.center - light.center;
     let distance = toward.length();
-    let sin = (light_radius + sphere.radius) / distance;
-    AimDisc {
+    let sin = (light.radius + sphere.radius) / distance;
+    AimTarget {
         center: sphere.center.into(),
         // The factor covers the rounding of centre and radius.
         radius: sphere.radius / (1.0 - sin * sin).sqrt() * 1.00001,

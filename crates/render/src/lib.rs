@@ -18,17 +18,20 @@
 //! ```
 
 pub use diacaustic_scene as scene;
-pub use diacaustic_shaders::AimDisc;
+pub use diacaustic_shaders::AimTarget;
 pub use diacaustic_surface::MapLayout;
 pub use {glam, wgpu};
 
 mod camera_pass;
 mod display_pass;
 mod energy_map;
+mod environment;
 mod error;
 mod film;
 mod gpu;
 mod guide;
+mod lights;
+mod material_records;
 mod photon_pass;
 mod random;
 mod ray_query;
@@ -45,4 +48,4 @@ pub use guide::Emission;
 pub use ray_query::{Ray, RayBatch, RayHit};
 pub use renderer::{Renderer, RendererOptions};
 pub use self_test::LoopLimit;
-pub use statistics::{Ledger, MapSize, SceneReport, Statistics};
+pub use statistics::{Ledger, LightReport, MapSize, SceneReport, Statistics};

@@ -2,16 +2,17 @@
 
 use std::ops::Range;
 
-use diacaustic_scene::{LightKind, Scene};
-use diacaustic_shaders::{AimDisc, MAX_AIM_DISCS, PHOTONS, PhotonParams, WORKGROUP_SIZE, ledger};
+use diacaustic_scene::RenderSettings;
+use diacaustic_shaders::{AimTarget, MAX_AIM_TARGETS, PHOTONS, PhotonParams, WORKGROUP_SIZE, ledger};
 use diacaustic_surface::BoundingSphere;
 use glam::DVec3;
 
 use crate::{
-    Error, Ledger,
+    Error, Ledger, LoopLimit,
     energy_map::EnergyMaps,
     gpu::{Binding, Gpu, Purpose, wide},
     guide::{Block, Emission, blocks},
+    lights::{Emitter, Lights},
     random::combine,
 };
 
@@ -47,19 +48,31 @@ impl PhotonPass {
 
 /// A light that emits photons.
 #[derive(Clone, Debug)]
-struct Emitter {
-    light: usize,
-    flux: glam::Vec3,
+struct PhotonLight {
+    emitter: Emitter,
     emission: Emission,
+    /// The first of its turns.
+    first_turn: u64,
+}
+
+impl PhotonLight {
+    /// How many of the first `photons` photons are its own, where all lights together have `turns`.
+    fn of_first(&self, photons: u64, turns: u64) -> u32 {
+        let own = u64::from(self.emitter.photon_share);
+        (photons / turns * own + (photons % turns).saturating_sub(self.first_turn).min(own)) as u32
+    }
 }
 
 /// One scene's photons on the device.
 #[derive(Debug)]
 pub(crate) struct Photons {
-    emitters: Vec<Emitter>,
+    lights: Vec<PhotonLight>,
+    /// Turns of all lights.
+    pub turns: u64,
+    account_count: usize,
+    /// The params of every block, but for its light and photons.
+    template: PhotonParams,
     seed: u32,
-    max_depth: u32,
-    light_count: u32,
     photons_per_invocation: u32,
     /// Units of the fixed-point sums in a watt: a power of two, so that scaling is exact.
     pub units_per_watt: f32,
@@ -69,31 +82,47 @@ pub(crate) struct Photons {
     outputs_group: wgpu::BindGroup,
 }
 
+/// What lights send photons into.
+pub(crate) struct Targets<'a> {
+    pub casters: &'a [BoundingSphere],
+    /// A sphere around everything.
+    pub around: BoundingSphere,
+}
+
 impl Photons {
     pub fn new(
         gpu: &Gpu,
         pass: &PhotonPass,
-        scene: &Scene,
-        casters: &[BoundingSphere],
+        settings: &RenderSettings,
+        lights: &Lights,
+        targets: &Targets,
         maps: &EnergyMaps,
-        photons_per_invocation: u32,
+        loop_limit: LoopLimit,
     ) -> Result<Self, Error> {
-        let emitters = emitters(scene, casters);
-        let share = emitters.len() as f32;
-        let largest = emitters
+        let (photon_lights, turns) = photon_lights(lights, targets.casters);
+        let largest = photon_lights
             .iter()
-            .map(|emitter| emitter.emission.largest_photon(&scene.lights[emitter.light].kind) * share)
+            .map(|light| light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns))
             .fold(f32::MIN_POSITIVE, f32::max);
+        let units_per_watt = (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2();
         let params = gpu.uniform::<PhotonParams>("photons");
-        let words = COUNTERS + (scene.lights.len().max(1) * LIGHT_WORDS) as u64;
+        let words = COUNTERS + (lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
         Ok(Self {
-            emitters,
-            seed: scene.settings.seed,
-            max_depth: scene.settings.max_depth,
-            light_count: scene.lights.len() as u32,
-            photons_per_invocation,
-            units_per_watt: (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2(),
+            lights: photon_lights,
+            turns,
+            account_count: lights.account_count,
+            template: PhotonParams {
+                max_depth: settings.max_depth,
+                sphere_count: lights.sphere_count as u32,
+                units_per_watt,
+                scene_center: targets.around.center.into(),
+                scene_radius: targets.around.radius,
+                ..Default::default()
+            },
+            seed: settings.seed,
+            photons_per_invocation: loop_limit.photons_per_invocation(settings.max_depth),
+            units_per_watt,
             params_group: gpu.bind(&pass.params_layout, &[&params]),
             outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger]),
             params,
@@ -101,14 +130,14 @@ impl Photons {
         })
     }
 
-    /// Whether any light emits photons: it has flux, and there is a caster.
+    /// Whether any light emits photons: it is not dark, and there is a caster.
     pub fn can_emit(&self) -> bool {
-        !self.emitters.is_empty()
+        !self.lights.is_empty()
     }
 
     /// How a light emits; none if it does not.
-    pub fn emission(&self, light: usize) -> Option<&Emission> {
-        self.emitters.iter().find(|emitter| emitter.light == light).map(|emitter| &emitter.emission)
+    pub fn emission(&self, number: usize) -> Option<&Emission> {
+        self.lights.iter().find(|light| light.emitter.number == number).map(|light| &light.emission)
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.
@@ -119,17 +148,16 @@ impl Photons {
         scene_group: &wgpu::BindGroup,
         range: Range<u64>,
     ) -> Result<(), Error> {
-        let turns = self.emitters.len() as u64;
-        let limit = u64::from(u32::MAX) * turns;
-        if turns > 0 && range.end > limit {
+        // A light's own photons are numbered with 32 bits.
+        let largest_share = self.lights.iter().map(|light| light.emitter.photon_share).max().unwrap_or(1);
+        let limit = u64::from(u32::MAX / largest_share) * self.turns;
+        if range.end > limit {
             return Err(Error::TooManyPhotons { index: range.end - 1, limit });
         }
-        for (turn, emitter) in self.emitters.iter().enumerate() {
-            // Of the first n photons, this light has those whose number leaves rest `turn`.
-            let of_first = |n: u64| ((n + turns - 1 - turn as u64) / turns) as u32;
-            for block in blocks(of_first(range.start), of_first(range.end)) {
+        for light in &self.lights {
+            for block in blocks(light.of_first(range.start, self.turns), light.of_first(range.end, self.turns)) {
                 let lanes = block.count.div_ceil(self.photons_per_invocation);
-                gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.block_params(emitter, &block, lanes)));
+                gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.block_params(light, &block, lanes)));
                 let groups = [scene_group, &self.params_group, &self.outputs_group];
                 gpu.dispatch(&pass.pipeline, &groups, [lanes.div_ceil(WORKGROUP_SIZE), 1]);
             }
@@ -137,35 +165,32 @@ impl Photons {
         Ok(())
     }
 
-    fn block_params(&self, emitter: &Emitter, block: &Block, lane_count: u32) -> PhotonParams {
-        let discs = match &emitter.emission {
-            Emission::Aimed(discs) => discs.as_slice(),
-            Emission::Unaimed => &[],
-        };
-        let mut aim_discs = [AimDisc::default(); MAX_AIM_DISCS as usize];
-        aim_discs[..discs.len()].copy_from_slice(discs);
+    fn block_params(&self, light: &PhotonLight, block: &Block, lane_count: u32) -> PhotonParams {
+        let emitter = &light.emitter;
+        let aimed = light.emission.targets();
+        let mut targets = [AimTarget::default(); MAX_AIM_TARGETS as usize];
+        targets[..aimed.len()].copy_from_slice(aimed);
         let columns = block.order.unwrap_or_default();
         PhotonParams {
-            light: emitter.light as u32,
+            light: emitter.index as u32,
+            account: emitter.number as u32,
             first_photon: block.first,
             photon_count: block.count,
             lane_count,
-            seed: combine(combine(self.seed, SEED_STREAM), emitter.light as u32),
-            max_depth: self.max_depth,
-            light_count: self.light_count,
-            aim_disc_count: discs.len() as u32,
+            seed: combine(combine(self.seed, SEED_STREAM), emitter.number as u32),
+            target_count: aimed.len() as u32,
             ordered: u32::from(block.order.is_some()),
-            units_per_watt: self.units_per_watt,
-            flux_factor: self.emitters.len() as f32,
-            flux: emitter.flux.into(),
+            flux_factor: flux_factor(emitter, self.turns),
+            media: emitter.media,
             order: std::array::from_fn(|k| std::array::from_fn(|i| columns[4 * k + i])),
-            aim_discs,
-            ..Default::default()
+            targets,
+            ..self.template
         }
     }
 
     /// Reads what the pass has counted. Blocks.
-    pub fn counts(&self, gpu: &Gpu, lights: usize) -> Result<PhotonCounts, Error> {
+    pub fn counts(&self, gpu: &Gpu) -> Result<PhotonCounts, Error> {
+        let lights = self.account_count;
         let words: Vec<u32> = gpu.read(&self.ledger, 0..COUNTERS + (lights.max(1) * LIGHT_WORDS) as u64)?;
         if words[2] > 0 {
             return Err(Error::CutShort { invocations: words[2] });
@@ -196,15 +221,22 @@ impl Photons {
     }
 }
 
-fn emitters(scene: &Scene, casters: &[BoundingSphere]) -> Vec<Emitter> {
-    let lights = scene.lights.iter().enumerate();
-    lights
-        .filter(|(_, light)| light.kind.flux().max_element() > 0.0)
-        .filter_map(|(index, light)| {
-            let LightKind::Sphere { flux, .. } = light.kind;
-            Emission::toward(&light.kind, casters).map(|emission| Emitter { light: index, flux, emission })
-        })
-        .collect()
+/// The inverse of a light's share of all photons.
+fn flux_factor(emitter: &Emitter, turns: u64) -> f32 {
+    turns as f32 / emitter.photon_share as f32
+}
+
+/// The lights that emit photons, with their turns, and the number of all turns.
+fn photon_lights(lights: &Lights, casters: &[BoundingSphere]) -> (Vec<PhotonLight>, u64) {
+    let mut turns = 0;
+    let mut list = Vec::new();
+    for emitter in &lights.emitters {
+        if let Some(emission) = Emission::toward(emitter, casters) {
+            list.push(PhotonLight { emitter: emitter.clone(), emission, first_turn: turns });
+            turns += u64::from(emitter.photon_share);
+        }
+    }
+    (list, turns)
 }
 
 /// What the photon pass has counted.

@@ -4,15 +4,17 @@ use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_shaders::QueryHit;
-use diacaustic_surface::{Bvh, MapLayout, caster_bounds, world_triangles};
+use diacaustic_surface::{Bvh, MapLayout, caster_bounds, light_surfaces, scene_bounds, world_triangles};
+use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, LoopLimit, MapSize, RenderParams, SceneReport, Statistics,
+    Emission, EnergyMap, Error, Film, LightReport, LoopLimit, MapSize, RenderParams, SceneReport, Statistics,
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass, place_maps},
     gpu::Gpu,
-    photon_pass::{PhotonPass, Photons},
+    lights::{Lights, emissive_materials},
+    photon_pass::{PhotonPass, Photons, Targets},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
 };
@@ -98,22 +100,31 @@ impl Renderer {
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
         let start = Instant::now();
-        let triangles = world_triangles(scene);
+        let mut triangles = world_triangles(scene);
+        let object_triangles = triangles.len();
+        triangles.extend(light_surfaces(scene));
         let bvh = Bvh::build(&triangles)?;
         let bvh_time = start.elapsed();
         let start = Instant::now();
         let limits = self.gpu.device.limits();
         let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let placements = place_maps(scene, &triangles, self.options.map_budget.unwrap_or(u64::MAX).min(bindable));
+        let placements = place_maps(
+            scene,
+            &triangles[..object_triangles],
+            self.options.map_budget.unwrap_or(u64::MAX).min(bindable),
+        );
         let maps_time = start.elapsed();
-        let casters = caster_bounds(scene, &triangles);
+        let casters = caster_bounds(scene, &triangles[..object_triangles]);
+        let around = scene_bounds(scene, &triangles);
+        let lights = Lights::new(scene, &bvh.triangles, &around);
         let on_device = self.gpu.guarded(|| {
-            let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &placements)?;
+            let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &lights, &placements)?;
             let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
-            let per_invocation = self.loop_limit.photons_per_invocation(scene.settings.max_depth);
+            let targets = Targets { casters: &casters, around };
+            let (settings, limit) = (&scene.settings, self.loop_limit);
             Ok(OnDevice {
-                photons: Photons::new(&self.gpu, &self.photon_pass, scene, &casters, &maps, per_invocation)?,
-                samples: Samples::new(&self.gpu, &self.camera_pass, scene, &maps)?,
+                photons: Photons::new(&self.gpu, &self.photon_pass, settings, &lights, &targets, &maps, limit)?,
+                samples: Samples::new(&self.gpu, &self.camera_pass, scene, &lights, &maps)?,
                 scene: scene.clone(),
                 origins: bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
                 buffers,
@@ -124,13 +135,14 @@ impl Renderer {
             })
         })?;
         let report = SceneReport {
-            triangles: triangles.len(),
+            triangles: object_triangles,
             bvh_nodes: bvh.nodes.len(),
             bvh_time,
             maps_time,
             device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.film.size(),
             maps: map_sizes(&on_device.maps),
-            emits_photons: on_device.photons.can_emit(),
+            photon_turns: on_device.photons.turns,
+            lights: light_reports(scene, &lights),
         };
         self.scene = Some(on_device);
         Ok(report)
@@ -214,7 +226,7 @@ impl Renderer {
     /// If no scene is set, the device fails, or it cut invocations short.
     pub fn statistics(&self) -> Result<Statistics, Error> {
         let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
-        let counts = on_device.photons.counts(&self.gpu, on_device.scene.lights.len())?;
+        let counts = on_device.photons.counts(&self.gpu)?;
         Ok(Statistics {
             photons: on_device.photon_count,
             deposits: counts.deposits,
@@ -286,7 +298,7 @@ impl Renderer {
         self.loop_limit
     }
 
-    /// How a light emits its photons; none if it has no flux, there is no caster, or no such light.
+    /// How a light emits its photons, by its place in [`SceneReport::lights`]; none if it is dark, there is no caster, or no such light.
     ///
     /// # Errors
     /// If no scene is set.
@@ -302,6 +314,14 @@ impl Renderer {
         let maps = &self.scene.as_ref().ok_or(Error::NoScene)?.maps;
         Ok(maps.placements.get(object).and_then(Option::as_ref).map(|map| &map.layout))
     }
+}
+
+/// What is known of every light of the scene, dark ones too, and of every emissive material.
+fn light_reports(scene: &Scene, lights: &Lights) -> Vec<LightReport> {
+    let names = scene.lights.iter().map(|light| light.name.clone());
+    let names = names.chain(emissive_materials(scene).into_iter().map(|(_, name)| name));
+    let flux = |number: usize| lights.emitters.iter().find(|e| e.number == number).map_or(Vec3::ZERO, |e| e.flux);
+    names.enumerate().map(|(number, name)| LightReport { name, flux: flux(number).to_array() }).collect()
 }
 
 fn map_sizes(maps: &EnergyMaps) -> Vec<MapSize> {

@@ -1,8 +1,7 @@
 //! The scene on the device: bind group 0 of both passes.
 
-use diacaustic_scene::{LightKind, MaterialKind, Scene};
+use diacaustic_scene::{LightKind, Scene};
 use diacaustic_shaders as shaders;
-use diacaustic_shaders::material_kind;
 use diacaustic_surface::{Bvh, WorldTriangle};
 use glam::Vec2;
 
@@ -10,10 +9,12 @@ use crate::{
     Error,
     energy_map::MapPlacement,
     gpu::{Binding, Gpu, Purpose, texture_bytes},
+    lights::{Lights, emissive_materials},
+    material_records::material,
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 6] = [Binding::Records; 6];
+pub(crate) const BINDINGS: [Binding; 8] = [Binding::Records; 8];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -21,6 +22,8 @@ const NODES: Purpose = Purpose { what: "the bounding volume hierarchy's nodes", 
 const OBJECTS: Purpose = Purpose { what: "the scene's objects", remedy: "use fewer objects" };
 const MATERIALS: Purpose = Purpose { what: "the scene's materials", remedy: "use fewer materials" };
 const LIGHTS: Purpose = Purpose { what: "the scene's lights", remedy: "use fewer lights" };
+const EMITTING_TRIANGLES: Purpose = Purpose { what: "the triangles that shine", remedy: "use fewer triangles" };
+const ENVIRONMENT: Purpose = Purpose { what: "the environment's picture", remedy: "use a smaller picture" };
 
 /// The scene's records, and what they weigh.
 #[derive(Debug)]
@@ -35,20 +38,32 @@ impl SceneBuffers {
         layout: &wgpu::BindGroupLayout,
         scene: &Scene,
         bvh: &Bvh,
+        lights: &Lights,
         maps: &[Option<MapPlacement>],
     ) -> Result<Self, Error> {
         let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
         let triangles: Vec<_> = bvh.triangles.iter().map(triangle).collect();
-        let corners: Vec<_> = bvh.triangles.iter().map(|t| triangle_corners(t, &maps[t.object as usize])).collect();
+        let corners: Vec<_> = bvh
+            .triangles
+            .iter()
+            .map(|t| triangle_corners(t, maps.get(t.object as usize).and_then(Option::as_ref)))
+            .collect();
         let objects: Vec<_> = maps.iter().map(object).collect();
-        let materials: Vec<_> = scene.materials.iter().map(|m| material(&m.kind)).collect();
+        let mut materials: Vec<_> = (0..scene.materials.len()).map(|index| material(scene, index)).collect();
+        for (order, (index, _)) in emissive_materials(scene).into_iter().enumerate() {
+            materials[index].emission_pdf_area = lights.pdf_area(scene.lights.len() + order);
+        }
+        let surfaces = scene.lights.iter().enumerate();
+        materials.extend(surfaces.map(|(number, light)| light_surface(lights, number, &light.kind)));
         let textures = [
             gpu.records(NODES, nodes)?,
             gpu.records(TRIANGLES, &triangles)?,
             gpu.records(CORNERS, &corners)?,
             gpu.records(OBJECTS, &objects)?,
             gpu.records(MATERIALS, &materials)?,
-            gpu.records(LIGHTS, &lights(scene))?,
+            gpu.records(LIGHTS, &lights.records)?,
+            gpu.records(EMITTING_TRIANGLES, &lights.triangles)?,
+            gpu.records(ENVIRONMENT, &lights.environment)?,
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
@@ -68,9 +83,9 @@ fn triangle(t: &WorldTriangle) -> shaders::Triangle {
     }
 }
 
-fn triangle_corners(t: &WorldTriangle, map: &Option<MapPlacement>) -> shaders::TriangleCorners {
+fn triangle_corners(t: &WorldTriangle, map: Option<&MapPlacement>) -> shaders::TriangleCorners {
     let normals = t.normals.unwrap_or_default();
-    let places = map.as_ref().map_or([Vec2::ZERO; 3], |map| t.arrange(map.layout.corners[t.triangle as usize]));
+    let places = map.map_or([Vec2::ZERO; 3], |map| t.arrange(map.layout.corners[t.triangle as usize]));
     shaders::TriangleCorners {
         normal_0: normals[0].into(),
         texel_x_2: places[2].x,
@@ -91,53 +106,13 @@ fn object(map: &Option<MapPlacement>) -> shaders::Object {
     })
 }
 
-fn material(kind: &MaterialKind) -> shaders::Material {
+/// The surface of a light: black, and it shines.
+fn light_surface(lights: &Lights, number: usize, kind: &LightKind) -> shaders::Material {
     let blank = shaders::Material { tint: [1.0; 3], ior: 1.0, ..Default::default() };
-    match *kind {
-        MaterialKind::Diffuse { albedo } => {
-            shaders::Material { kind: material_kind::DIFFUSE, reflectance: albedo.into(), ..blank }
+    match kind {
+        LightKind::Rectangle { .. } | LightKind::Disk { .. } => {
+            shaders::Material { emission: kind.strength().into(), emission_pdf_area: lights.pdf_area(number), ..blank }
         }
-        MaterialKind::Phong { ambient, diffuse, specular, shininess } => shaders::Material {
-            kind: material_kind::PHONG,
-            reflectance: diffuse.into(),
-            specular: specular.into(),
-            ambient: ambient.into(),
-            shininess,
-            ..blank
-        },
-        MaterialKind::Mirror { reflectance } => {
-            shaders::Material { kind: material_kind::MIRROR, reflectance: reflectance.into(), ..blank }
-        }
-        MaterialKind::Dielectric { ior, tint, absorption } => shaders::Material {
-            kind: material_kind::DIELECTRIC,
-            tint: tint.into(),
-            ior,
-            absorption: absorption.into(),
-            ..blank
-        },
+        _ => blank,
     }
-}
-
-/// The lights, which the camera pass chooses in proportion to their power.
-fn lights(scene: &Scene) -> Vec<shaders::SphereLight> {
-    let total: f32 = scene.lights.iter().map(|light| light.kind.flux().element_sum()).sum();
-    let mut before = 0.0;
-    let mut list: Vec<_> = scene
-        .lights
-        .iter()
-        .map(|light| {
-            let LightKind::Sphere { center, radius, flux } = light.kind;
-            before += if total > 0.0 { flux.element_sum() / total } else { 0.0 };
-            shaders::SphereLight {
-                center: center.into(),
-                radius,
-                radiance: light.kind.radiance().into(),
-                cumulative_probability: before,
-            }
-        })
-        .collect();
-    if let Some(last) = list.iter().rposition(|light| light.radiance != [0.0; 3]) {
-        list[last..].iter_mut().for_each(|light| light.cumulative_probability = 1.0);
-    }
-    list
 }

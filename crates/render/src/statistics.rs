@@ -37,6 +37,15 @@ pub struct MapSize {
     pub layers: u32,
 }
 
+/// Something that shines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightReport {
+    /// Its name; "material" and the material's name for an emissive material.
+    pub name: String,
+    /// Radiant flux, W per channel; of light from infinitely far, what enters a sphere around the scene.
+    pub flux: [f32; 3],
+}
+
 /// What setting a scene built.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneReport {
@@ -52,8 +61,11 @@ pub struct SceneReport {
     pub device_bytes: u64,
     /// The maps.
     pub maps: Vec<MapSize>,
-    /// Whether any light sends photons: it has flux and there is a caster.
-    pub emits_photons: bool,
+    /// Photons after which every light has had its turns once: the sum of the lights' shares; 0 if none sends photons, for all are dark
+    /// or there is no caster.
+    pub photon_turns: u64,
+    /// The lights of the scene, then the materials with emission that objects show.
+    pub lights: Vec<LightReport>,
 }
 
 /// What the device has counted since the scene was set.
@@ -69,6 +81,6 @@ pub struct Statistics {
     pub samples: u32,
     /// Rays of the camera pass, shadow rays among them.
     pub camera_rays: u64,
-    /// A ledger for each light.
+    /// A ledger for each of [`SceneReport::lights`].
     pub ledgers: Vec<Ledger>,
 }

@@ -1,6 +1,6 @@
 //! Bounding spheres of casters: where lights aim.
 
-use diacaustic_scene::Scene;
+use diacaustic_scene::{LightKind, Scene};
 use glam::Vec3;
 
 use crate::WorldTriangle;
@@ -16,7 +16,7 @@ pub struct BoundingSphere {
 
 impl BoundingSphere {
     /// The sphere around the centre of the points' box that holds all of them.
-    fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
+    pub fn around(points: impl Iterator<Item = Vec3> + Clone) -> Self {
         let (low, high) = points
             .clone()
             .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), point| (low.min(point), high.max(point)));
@@ -39,6 +39,20 @@ impl BoundingSphere {
         let radius = 0.5 * (distance + self.radius + other.radius);
         Self { center: self.center + between * ((radius - self.radius) / distance), radius: radius * 1.000_001 }
     }
+}
+
+/// A sphere around everything that has a place: triangles and lights.
+pub fn scene_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> BoundingSphere {
+    let lights = scene.lights.iter().flat_map(|light| match light.kind {
+        LightKind::Sphere { center, radius, .. } => vec![center - Vec3::splat(radius), center + Vec3::splat(radius)],
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => vec![position],
+        // Surfaces are among the triangles.
+        LightKind::Rectangle { .. }
+        | LightKind::Disk { .. }
+        | LightKind::Distant { .. }
+        | LightKind::Environment { .. } => Vec::new(),
+    });
+    BoundingSphere::around(triangles.iter().flat_map(|t| t.corners).chain(lights))
 }
 
 /// The bounding spheres of each object's casting triangles.

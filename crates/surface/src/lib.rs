@@ -5,12 +5,14 @@ mod bounds;
 mod bvh;
 mod chart;
 mod error;
+mod light_surfaces;
 mod texel_area;
 mod triangles;
 
-pub use bounds::{BoundingSphere, caster_bounds, merge_spheres};
+pub use bounds::{BoundingSphere, caster_bounds, merge_spheres, scene_bounds};
 pub use bvh::{Bvh, BvhNode, MAX_DEPTH};
 pub use chart::{MapLayout, uvs_overlap};
 pub use error::Error;
+pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use texel_area::texel_areas;
 pub use triangles::{WorldTriangle, world_triangles};

@@ -1,0 +1,300 @@
+//! Everything that shines, as the device knows it: the scene's lights and the materials with emission.
+
+use std::f32::consts::PI;
+
+use diacaustic_scene::{LightKind, MaterialKind, RadianceMap, Scene};
+use diacaustic_shaders as shaders;
+use diacaustic_shaders::light_kind;
+use diacaustic_surface::{BoundingSphere, WorldTriangle};
+use glam::Vec3;
+
+use crate::environment::EnvironmentRecord;
+
+/// The share of next-event estimation that goes to the lights in proportion to their power; the rest goes to all evenly, so that a weak
+/// lamp is not forgotten beside the sun.
+const BY_POWER: f32 = 0.75;
+
+/// One emitter.
+#[derive(Clone, Debug)]
+pub(crate) struct Emitter {
+    /// Its place among all emitters, ℓ in docs/photon-paths.md.
+    pub number: usize,
+    /// Its place on the device.
+    pub index: usize,
+    /// Turns in which it sends photons.
+    pub photon_share: u32,
+    /// Radiant flux, W; of light from infinitely far, what enters the sphere around the scene.
+    pub flux: Vec3,
+    /// A sphere around it; none if it is infinitely far.
+    pub bounds: Option<BoundingSphere>,
+    /// The most that one photon carries for a density of 1: intensity W/sr, radiance times area, or irradiance W/m².
+    pub peak: f32,
+    /// The media that it stands in, as keys.
+    pub media: [u32; 4],
+    record: shaders::Light,
+}
+
+impl Emitter {
+    /// One of [`light_kind`].
+    pub fn kind(&self) -> u32 {
+        self.record.kind
+    }
+}
+
+/// All emitters, in the order of the device: spheres first, light from infinitely far last.
+#[derive(Clone, Debug)]
+pub(crate) struct Lights {
+    pub emitters: Vec<Emitter>,
+    pub records: Vec<shaders::Light>,
+    /// For each emitting triangle: its index, and as bits the share of its light's area up to and including it.
+    pub triangles: Vec<[u32; 4]>,
+    /// The environment's record; one black texel without environment.
+    pub environment: Vec<[f32; 4]>,
+    /// Spheres among them.
+    pub sphere_count: usize,
+    /// The first that is infinitely far.
+    pub first_sky: usize,
+    /// Lights of the scene and emissive materials.
+    pub account_count: usize,
+}
+
+/// An emitter before it has a place on the device.
+struct Candidate {
+    emitter: Emitter,
+    /// The material whose triangles shine.
+    material: Option<usize>,
+}
+
+impl Lights {
+    /// Collects what shines in a scene; `triangles` are those of the hierarchy, with the lights' surfaces.
+    pub fn new(scene: &Scene, triangles: &[WorldTriangle], around: &BoundingSphere) -> Self {
+        let mut lights = Self {
+            emitters: Vec::new(),
+            records: Vec::new(),
+            triangles: Vec::new(),
+            environment: vec![[0.0; 4]],
+            sphere_count: 0,
+            first_sky: 0,
+            account_count: 0,
+        };
+        let mut candidates: Vec<Candidate> = Vec::new();
+        for (number, light) in scene.lights.iter().enumerate().filter(|(_, light)| !light.kind.is_dark()) {
+            let record = record(&light.kind);
+            let emitter = Emitter {
+                number,
+                index: 0,
+                photon_share: light.photon_share,
+                flux: Vec3::ZERO,
+                bounds: None,
+                peak: 0.0,
+                media: place(&light.kind).map_or([0; 4], |point| media_keys(scene, point)),
+                record,
+            };
+            let mut candidate = Candidate { emitter, material: None };
+            match &light.kind {
+                LightKind::Environment { map, scale, .. } => {
+                    lights.set_environment(&mut candidate, map, *scale, around)
+                }
+                LightKind::Rectangle { .. } | LightKind::Disk { .. } => {
+                    candidate.material = Some(scene.materials.len() + number);
+                }
+                kind => measure(&mut candidate.emitter, kind, around),
+            }
+            candidates.push(candidate);
+        }
+        lights.account_count = scene.lights.len();
+        for (material, _) in emissive_materials(scene) {
+            let number = lights.account_count;
+            lights.account_count += 1;
+            let strength = scene.materials[material].emission;
+            candidates.push(Candidate { emitter: emissive_surface(number, strength), material: Some(material) });
+        }
+        for candidate in candidates.iter_mut().filter(|candidate| candidate.material.is_some()) {
+            lights.gather_surface(scene, candidate, triangles);
+        }
+        candidates.retain(|candidate| candidate.emitter.flux != Vec3::ZERO);
+        lights.arrange(candidates);
+        lights
+    }
+
+    fn set_environment(&mut self, candidate: &mut Candidate, map: &RadianceMap, scale: Vec3, around: &BoundingSphere) {
+        let record = EnvironmentRecord::new(map);
+        self.environment = record.texels;
+        let cross_section = PI * around.radius * around.radius;
+        candidate.emitter.flux = 4.0 * PI * cross_section * record.mean_radiance * scale;
+        candidate.emitter.peak = record.largest_ratio * scale.max_element();
+    }
+
+    /// Lists the triangles of a surface that shines.
+    fn gather_surface(&mut self, scene: &Scene, candidate: &mut Candidate, triangles: &[WorldTriangle]) {
+        let material = candidate.material.map_or(u32::MAX, |material| material as u32);
+        let first = self.triangles.len();
+        // A triangle that straddles a split of the hierarchy is there twice, and shines once.
+        let mut seen = std::collections::HashSet::new();
+        let own: Vec<_> = triangles
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| t.material == material && seen.insert((t.object, t.triangle)))
+            .collect();
+        let areas: Vec<f64> = own.iter().map(|(_, t)| 0.5 * f64::from(t.double_area_normal().length())).collect();
+        let total: f64 = areas.iter().sum();
+        let mut before = 0.0;
+        for ((index, _), area) in own.iter().zip(&areas) {
+            before += area;
+            self.triangles.push([*index as u32, ((before / total) as f32).to_bits(), 0, 0]);
+        }
+        let Some(last) = self.triangles[first..].last_mut() else { return };
+        last[1] = 1f32.to_bits();
+        let emitter = &mut candidate.emitter;
+        emitter.record.first = first as u32;
+        emitter.record.count = own.len() as u32;
+        emitter.record.extent = total as f32;
+        let strength = Vec3::from(emitter.record.strength);
+        emitter.flux = strength * (PI * total as f32);
+        emitter.peak = strength.max_element() * total as f32;
+        emitter.bounds = Some(BoundingSphere::around(own.iter().flat_map(|(_, t)| t.corners)));
+        emitter.media = media_keys(scene, own[0].1.corners[0]);
+    }
+
+    /// Gives every emitter its place and its probability.
+    fn arrange(&mut self, candidates: Vec<Candidate>) {
+        self.emitters = candidates.into_iter().map(|candidate| candidate.emitter).collect();
+        self.emitters.sort_by_key(|emitter| match emitter.kind() {
+            light_kind::SPHERE => 0,
+            light_kind::DISTANT | light_kind::ENVIRONMENT => 2,
+            _ => 1,
+        });
+        self.sphere_count = self.emitters.iter().filter(|e| e.kind() == light_kind::SPHERE).count();
+        self.first_sky = self.emitters.iter().filter(|e| e.bounds.is_some()).count();
+        let total: f32 = self.emitters.iter().map(|emitter| emitter.flux.element_sum()).sum();
+        let even = 1.0 / self.emitters.len().max(1) as f32;
+        let mut before = 0.0;
+        let last = self.emitters.len();
+        for (index, emitter) in self.emitters.iter_mut().enumerate() {
+            emitter.index = index;
+            before += BY_POWER * (emitter.flux.element_sum() / total) + (1.0 - BY_POWER) * even;
+            emitter.record.cumulative_probability = if index + 1 == last { 1.0 } else { before };
+            self.records.push(emitter.record);
+        }
+        // By account, so that photons take turns in the order of docs/photon-paths.md.
+        self.emitters.sort_by_key(|emitter| emitter.number);
+    }
+
+    /// The density with which next-event estimation chooses a point of a material's surface, 1/m².
+    pub fn pdf_area(&self, number: usize) -> f32 {
+        let Some(emitter) = self.emitters.iter().find(|emitter| emitter.number == number) else { return 0.0 };
+        let cumulative = |index: usize| self.records[index].cumulative_probability;
+        let before = if emitter.index > 0 { cumulative(emitter.index - 1) } else { 0.0 };
+        (cumulative(emitter.index) - before) / emitter.record.extent
+    }
+}
+
+/// The materials that shine and that an object shows, with the names of their emitters.
+pub(crate) fn emissive_materials(scene: &Scene) -> Vec<(usize, String)> {
+    let is_shown = |index: usize| scene.objects.iter().any(|object| object.materials.contains(&index));
+    let materials = scene.materials.iter().enumerate();
+    materials
+        .filter(|(index, material)| material.emission != Vec3::ZERO && is_shown(*index))
+        .map(|(index, material)| (index, format!("material {}", material.name)))
+        .collect()
+}
+
+fn emissive_surface(number: usize, strength: Vec3) -> Emitter {
+    Emitter {
+        number,
+        index: 0,
+        photon_share: 1,
+        flux: Vec3::ZERO,
+        bounds: None,
+        peak: 0.0,
+        media: [0; 4],
+        record: shaders::Light { kind: light_kind::SURFACE, strength: strength.into(), ..Default::default() },
+    }
+}
+
+/// The point whose surroundings a light stands in; none for light from infinitely far.
+fn place(kind: &LightKind) -> Option<Vec3> {
+    match *kind {
+        LightKind::Sphere { center, .. } | LightKind::Rectangle { center, .. } | LightKind::Disk { center, .. } => {
+            Some(center)
+        }
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => Some(position),
+        LightKind::Distant { .. } | LightKind::Environment { .. } => None,
+    }
+}
+
+/// Flux, bounds and peak of a light without triangles.
+fn measure(emitter: &mut Emitter, kind: &LightKind, around: &BoundingSphere) {
+    let strength = kind.strength();
+    match *kind {
+        LightKind::Sphere { center, radius, flux } => {
+            emitter.flux = flux;
+            emitter.bounds = Some(BoundingSphere { center, radius });
+            emitter.peak = strength.max_element();
+        }
+        LightKind::Point { position, flux } | LightKind::Spot { position, flux, .. } => {
+            emitter.flux = flux;
+            emitter.bounds = Some(BoundingSphere { center: position, radius: 0.0 });
+            emitter.peak = strength.max_element();
+        }
+        LightKind::Distant { irradiance, .. } => {
+            emitter.flux = PI * around.radius * around.radius * irradiance;
+            // The disc in the sky has a little less irradiance in the measure of directions: L·2π(1 − cos α) < L·π sin²α · 2.
+            emitter.peak = 2.0 * irradiance.max_element();
+        }
+        LightKind::Rectangle { .. } | LightKind::Disk { .. } | LightKind::Environment { .. } => {}
+    }
+}
+
+fn record(kind: &LightKind) -> shaders::Light {
+    let blank = shaders::Light { strength: kind.strength().into(), ..Default::default() };
+    match *kind {
+        LightKind::Sphere { center, radius, .. } => {
+            shaders::Light { kind: light_kind::SPHERE, position: center.into(), extent: radius, ..blank }
+        }
+        LightKind::Rectangle { .. } | LightKind::Disk { .. } => shaders::Light { kind: light_kind::SURFACE, ..blank },
+        LightKind::Point { position, .. } => {
+            shaders::Light { kind: light_kind::POINT, position: position.into(), ..blank }
+        }
+        LightKind::Spot { position, direction, inner_angle, outer_angle, .. } => shaders::Light {
+            kind: light_kind::SPOT,
+            position: position.into(),
+            axis: direction.normalize().into(),
+            cos_inner: inner_angle.to_radians().cos(),
+            cos_outer: outer_angle.to_radians().cos(),
+            ..blank
+        },
+        LightKind::Distant { direction, angular_radius, .. } => shaders::Light {
+            kind: light_kind::DISTANT,
+            position: (-direction.normalize()).into(),
+            extent: 2.0 * (0.5 * angular_radius.to_radians()).sin().powi(2),
+            ..blank
+        },
+        LightKind::Environment { ref map, rotate, .. } => {
+            let (sin, cos) = rotate.to_radians().sin_cos();
+            let turn = [cos, sin, 0.0];
+            shaders::Light { kind: light_kind::ENVIRONMENT, axis: turn, first: map.width, count: map.height, ..blank }
+        }
+    }
+}
+
+/// The key of a dielectric in lists of media; 0 for another material.
+pub(crate) fn medium_key(scene: &Scene, material: usize) -> u32 {
+    scene.dielectric_rank(material).map_or(0, |rank| (rank + 1) << 16 | material as u32)
+}
+
+/// Index of refraction of the medium of a key.
+pub(crate) fn medium_index(scene: &Scene, key: u32) -> f32 {
+    match scene.materials.get((key & 0xffff) as usize).map(|material| &material.kind) {
+        Some(&MaterialKind::Dielectric { ior, .. }) if key != 0 => ior,
+        _ => 1.0,
+    }
+}
+
+/// The keys of the four highest dielectrics around a point, the highest first.
+pub(crate) fn media_keys(scene: &Scene, point: Vec3) -> [u32; 4] {
+    let mut keys: Vec<u32> = scene.media_at(point).into_iter().map(|material| medium_key(scene, material)).collect();
+    keys.sort_unstable_by(|a, b| b.cmp(a));
+    keys.resize(4, 0);
+    [keys[0], keys[1], keys[2], keys[3]]
+}

@@ -1,0 +1,134 @@
+//! Materials as the device knows them; docs/materials.md.
+
+use diacaustic_scene::{MaterialKind, SMOOTH, Scene};
+use diacaustic_shaders as shaders;
+use diacaustic_shaders::material_kind as kinds;
+use glam::Vec3;
+
+use crate::lights::medium_key;
+
+/// Reflectance along the normal of the dielectric part of glTF's model.
+const DIELECTRIC_F0: f32 = 0.04;
+/// Steps of the quadrature over angles of incidence.
+const FRESNEL_STEPS: usize = 4096;
+
+/// The record of a material of the scene.
+pub(crate) fn material(scene: &Scene, index: usize) -> shaders::Material {
+    let source = &scene.materials[index];
+    let kind = &source.kind;
+    let caster = if kind.is_caster() { kinds::CASTER } else { 0 };
+    let receiver = if kind.is_receiver() { kinds::RECEIVER } else { 0 };
+    let scattering = scattering(kind);
+    shaders::Material {
+        kind: scattering.kind | caster | receiver,
+        medium: medium_key(scene, index),
+        emission: source.emission.into(),
+        ..scattering
+    }
+}
+
+/// What a material does to light, without its roles.
+fn scattering(kind: &MaterialKind) -> shaders::Material {
+    let blank = shaders::Material { tint: [1.0; 3], ior: 1.0, ..Default::default() };
+    match *kind {
+        MaterialKind::Diffuse { albedo } => shaders::Material { kind: kinds::DIFFUSE, base: albedo.into(), ..blank },
+        MaterialKind::Phong { ambient, diffuse, specular, shininess } => shaders::Material {
+            kind: kinds::PHONG,
+            base: diffuse.into(),
+            specular: specular.into(),
+            tint: ambient.into(),
+            ior: shininess,
+            ..blank
+        },
+        MaterialKind::Mirror { reflectance } => {
+            shaders::Material { kind: kinds::MIRROR, specular: reflectance.into(), ..blank }
+        }
+        MaterialKind::Conductor { eta, k, roughness } => shaders::Material {
+            kind: kinds::CONDUCTOR,
+            specular: eta.into(),
+            extinction: k.into(),
+            gloss: width(roughness),
+            ..blank
+        },
+        MaterialKind::Dielectric { ior, tint, absorption, roughness, .. } => shaders::Material {
+            kind: kinds::DIELECTRIC,
+            ior,
+            tint: tint.into(),
+            extinction: absorption.into(),
+            gloss: width(roughness),
+            ..blank
+        },
+        MaterialKind::ThinWalled { ior, tint } => {
+            shaders::Material { kind: kinds::THIN_WALLED, ior, tint: tint.into(), ..blank }
+        }
+        MaterialKind::Coated { albedo, ior, roughness } => shaders::Material {
+            kind: kinds::COATED,
+            base: under_coat(albedo, ior).into(),
+            ior,
+            gloss: width(roughness),
+            ..blank
+        },
+        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+            let f0 = Vec3::splat(DIELECTRIC_F0).lerp(base_color, metallic);
+            let average = f0 + (Vec3::ONE - f0) / 21.0;
+            // A white metal has no base, and would divide 0 by 0.
+            let base = (1.0 - metallic) * base_color / (Vec3::ONE - average).max(Vec3::splat(f32::MIN_POSITIVE));
+            shaders::Material {
+                kind: kinds::METALLIC_ROUGHNESS,
+                base: base.into(),
+                specular: f0.into(),
+                gloss: width(roughness),
+                ..blank
+            }
+        }
+    }
+}
+
+/// Width α of the microfacets' distribution; 0 for a smooth surface.
+fn width(roughness: f32) -> f32 {
+    if roughness < SMOOTH { 0.0 } else { roughness * roughness }
+}
+
+/// ρ* of a base of albedo ρ under a coat: ρ/(n²(1 − ρF_in)).
+fn under_coat(albedo: Vec3, ior: f32) -> Vec3 {
+    let n = f64::from(ior);
+    let outside = mean_reflectance(n);
+    let inside = 1.0 - (1.0 - outside) / (n * n);
+    albedo / ((n * n) as f32 * (Vec3::ONE - albedo * inside as f32))
+}
+
+/// 2∫F(μ)μ dμ over 0 … 1: the reflectance from outside for light from everywhere.
+fn mean_reflectance(n: f64) -> f64 {
+    let step = 1.0 / FRESNEL_STEPS as f64;
+    (0..FRESNEL_STEPS)
+        .map(|i| {
+            let mu = (i as f64 + 0.5) * step;
+            2.0 * reflectance(mu, n) * mu * step
+        })
+        .sum()
+}
+
+/// Fresnel reflectance from outside at cosine `mu`.
+fn reflectance(mu: f64, n: f64) -> f64 {
+    let cos_t = (1.0 - (1.0 - mu * mu) / (n * n)).sqrt();
+    let r_s = (mu - n * cos_t) / (mu + n * cos_t);
+    let r_p = (n * mu - cos_t) / (n * mu + cos_t);
+    0.5 * (r_s * r_s + r_p * r_p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_reflectance_of_glass() {
+        // 0.0918 for n = 1.5 (Walsh 1926).
+        assert!((mean_reflectance(1.5) - 0.0918).abs() < 1e-4, "{}", mean_reflectance(1.5));
+        assert!(mean_reflectance(1.0) < 1e-12);
+    }
+
+    #[test]
+    fn coat_of_index_one_leaves_the_base_alone() {
+        assert!(under_coat(Vec3::new(0.2, 0.5, 0.9), 1.0).abs_diff_eq(Vec3::new(0.2, 0.5, 0.9), 1e-6));
+    }
+}

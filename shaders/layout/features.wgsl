@@ -1,0 +1,17 @@
+// What the scene makes use of, set when a pipeline is made: code without use is not compiled, for software adapters pay for every branch that a
+// kernel has, taken or not.
+
+/// Whether a surface is rough, coated or metallic-rough.
+override has_gloss: bool = true;
+/// Whether there are metals.
+override has_conductors: bool = true;
+/// Whether there are points or spots.
+override has_point_lights: bool = true;
+/// Whether triangles shine.
+override has_surface_lights: bool = true;
+/// Whether there is light from infinitely far.
+override has_distant_lights: bool = true;
+/// Whether there is an environment.
+override has_environment: bool = true;
+/// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.
+override photon_light_kind: u32 = 0u;
