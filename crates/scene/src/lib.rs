@@ -42,25 +42,31 @@
 //! ```
 
 mod camera;
+mod environment_image;
 mod error;
 mod light;
 mod material;
 mod media;
 mod mesh;
+mod metals;
 mod obj;
 mod primitives;
 mod radiance_map;
 mod read_toml;
 mod scene;
 mod solid;
+mod substances;
 mod validate;
 
 pub use camera::Camera;
+pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
 pub use light::{Light, LightKind};
 pub use material::{GLOSSY, Material, MaterialKind, SMOOTH};
 pub use mesh::{Chart, Mesh};
+pub use metals::{METALS, Metal, metal};
 pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
 pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
+pub use substances::{SUBSTANCES, Substance, substance};
