@@ -1,6 +1,6 @@
 //! Scene description for diacaustic: TOML, OBJ and primitives, validated. No GPU.
 //!
-//! [`load_scene`] reads a scene file and the meshes that it names. A [`Scene`] can be built in code as well;
+//! [`load_scene`] reads a scene file and the meshes and images that it names. A [`Scene`] can be built in code as well;
 //! [`Scene::validate`] then checks it the same way.
 //!
 //! ```

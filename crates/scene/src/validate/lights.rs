@@ -27,37 +27,37 @@ impl Scene {
 }
 
 fn check_kind(at: &At, kind: &LightKind) -> Result<(), Error> {
-    let radius = |radius| at.number("radius", radius, above(0.0), "greater than 0 (metres)");
-    let flux = |flux| at.channels("flux", flux, 0.0.., "0 or greater (watts)");
+    let check_radius = |radius| at.number("radius", radius, above(0.0), "greater than 0 (metres)");
+    let check_flux = |flux| at.channels("flux", flux, 0.0.., "0 or greater (watts)");
     match *kind {
-        LightKind::Sphere { center, radius: length, flux: power } => {
+        LightKind::Sphere { center, radius, flux } => {
             at.position("center", center)?;
-            radius(length)?;
-            flux(power)?;
+            check_radius(radius)?;
+            check_flux(flux)?;
             check_strength(at, kind, "radius")
         }
-        LightKind::Rectangle { center, edge_u, edge_v, flux: power } => {
+        LightKind::Rectangle { center, edge_u, edge_v, flux } => {
             at.position("center", center)?;
             check_edges(at, edge_u, edge_v)?;
-            flux(power)?;
+            check_flux(flux)?;
             check_strength(at, kind, "edge_u")
         }
-        LightKind::Disk { center, normal, radius: length, flux: power } => {
+        LightKind::Disk { center, normal, radius, flux } => {
             at.position("center", center)?;
             at.direction("normal", normal)?;
-            radius(length)?;
-            flux(power)?;
+            check_radius(radius)?;
+            check_flux(flux)?;
             check_strength(at, kind, "radius")
         }
-        LightKind::Point { position, flux: power } => {
+        LightKind::Point { position, flux } => {
             at.position("position", position)?;
-            flux(power)
+            check_flux(flux)
         }
-        LightKind::Spot { position, direction, inner_angle, outer_angle, flux: power } => {
+        LightKind::Spot { position, direction, inner_angle, outer_angle, flux } => {
             at.position("position", position)?;
             at.direction("direction", direction)?;
             check_cone(at, inner_angle, outer_angle)?;
-            flux(power)?;
+            check_flux(flux)?;
             check_strength(at, kind, "outer_angle")
         }
         LightKind::Distant { direction, angular_radius, irradiance } => {
@@ -108,6 +108,7 @@ fn check_map(at: &At, map: &RadianceMap, scale: Vec3) -> Result<(), Error> {
     map.check().map_err(|problem| at.error("image", problem))?;
     let brightest = map.texels.iter().copied().fold(Vec3::ZERO, Vec3::max);
     at.require((brightest * scale).is_finite(), "scale", || {
-        format!("is {scale}; times the image's brightest channels, {brightest}, it must be finite")
+        let (scale, brightest) = (scale.to_array(), brightest.to_array());
+        format!("is {scale:?}; times the image's brightest channels, {brightest:?}, it must be finite")
     })
 }

@@ -29,42 +29,42 @@ fn check_material(index: usize, material: &Material) -> Result<(), Error> {
 }
 
 fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
-    let share = |key, color| at.channels(key, color, 0.0..=1.0, "from 0 to 1");
-    let index = |ior| at.number("ior", ior, above(0.0), "finite and greater than 0");
-    let roughness = |roughness| at.number("roughness", roughness, 0.0..=1.0, "from 0 to 1");
+    let check_share = |key, color| at.channels(key, color, 0.0..=1.0, "from 0 to 1");
+    let check_ior = |ior| at.number("ior", ior, above(0.0), "finite and greater than 0");
+    let check_roughness = |roughness| at.number("roughness", roughness, 0.0..=1.0, "from 0 to 1");
     match *kind {
-        MaterialKind::Diffuse { albedo } => share("albedo", albedo),
-        MaterialKind::Mirror { reflectance } => share("reflectance", reflectance),
+        MaterialKind::Diffuse { albedo } => check_share("albedo", albedo),
+        MaterialKind::Mirror { reflectance } => check_share("reflectance", reflectance),
         MaterialKind::Phong { ambient, diffuse, specular, shininess } => {
-            share("ambient", ambient)?;
-            share("diffuse", diffuse)?;
-            share("specular", specular)?;
+            check_share("ambient", ambient)?;
+            check_share("diffuse", diffuse)?;
+            check_share("specular", specular)?;
             at.number("shininess", shininess, above(0.0), "finite and greater than 0")
         }
-        MaterialKind::Conductor { eta, k, roughness: width } => {
+        MaterialKind::Conductor { eta, k, roughness } => {
             at.channels("eta", eta, above(0.0), "finite and greater than 0")?;
             at.channels("k", k, 0.0.., "finite and 0 or greater")?;
-            roughness(width)
+            check_roughness(roughness)
         }
-        MaterialKind::Dielectric { ior, tint, absorption, roughness: width, priority: _ } => {
-            index(ior)?;
-            share("tint", tint)?;
+        MaterialKind::Dielectric { ior, tint, absorption, roughness, priority: _ } => {
+            check_ior(ior)?;
+            check_share("tint", tint)?;
             at.channels("absorption", absorption, 0.0.., "0 or greater (1/m)")?;
-            roughness(width)
+            check_roughness(roughness)
         }
         MaterialKind::ThinWalled { ior, tint } => {
-            index(ior)?;
-            share("tint", tint)
+            check_ior(ior)?;
+            check_share("tint", tint)
         }
-        MaterialKind::Coated { albedo, ior, roughness: width } => {
-            share("albedo", albedo)?;
+        MaterialKind::Coated { albedo, ior, roughness } => {
+            check_share("albedo", albedo)?;
             at.number("ior", ior, 1.0.., "1 or greater and finite")?;
-            roughness(width)
+            check_roughness(roughness)
         }
-        MaterialKind::MetallicRoughness { base_color, metallic, roughness: width } => {
-            share("base_color", base_color)?;
+        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+            check_share("base_color", base_color)?;
             at.number("metallic", metallic, 0.0..=1.0, "from 0 to 1")?;
-            roughness(width)
+            check_roughness(roughness)
         }
     }
 }
