@@ -148,15 +148,23 @@ pub enum Error {
         /// What is wrong and what would be right.
         problem: String,
     },
-    /// A mesh file that the scene file names cannot be used.
+    /// A mesh or an image that the scene file names cannot be used.
     #[error("{at}: {place}: {cause}")]
-    Mesh {
-        /// Where the scene file names the mesh.
+    File {
+        /// Where the scene file names the file.
         at: Location,
         /// The table and the key.
         place: String,
-        /// What is wrong with the mesh file.
+        /// What is wrong with the file.
         cause: Box<Error>,
+    },
+    /// An environment image cannot be used.
+    #[error("{}: the image {problem}", path.display())]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what would be right.
+        problem: String,
     },
     /// An OBJ or MTL file makes no sense.
     #[error("{}{}: {problem}", path.display(), line.map(|line| format!(":{line}")).unwrap_or_default())]
@@ -189,7 +197,8 @@ pub enum Warning {
     /// A dielectric's surface encloses no volume.
     #[error(
         "object {object:?}: its material is a dielectric, but its surface is not closed ({open_edges} open edges): \
-         light that enters through a hole is refracted wrongly; close the mesh"
+         light that enters through a hole is refracted wrongly; close the mesh, or give a sheet of glass the \
+         material type \"thin_walled\""
     )]
     OpenDielectric {
         /// The object.
@@ -214,47 +223,29 @@ pub enum Warning {
         /// How many.
         count: usize,
     },
-    /// A light shines from inside a dielectric.
-    #[error(
-        "light {light:?} lies inside the dielectric object {object:?}: not supported yet, the picture will be wrong; \
-         move the light out of the object"
-    )]
-    LightInsideDielectric {
-        /// The light.
-        light: String,
-        /// The object.
-        object: String,
-    },
-    /// The camera looks from inside a dielectric.
-    #[error(
-        "the camera lies inside the dielectric object {object:?}: not supported yet, the picture will be wrong; \
-         move the camera out of the object"
-    )]
-    CameraInsideDielectric {
-        /// The object.
-        object: String,
-    },
     /// The camera is inside a light's sphere.
     #[error("the camera lies inside the light {light:?} and sees nothing but its surface; move one of them")]
     CameraInsideLight {
         /// The light.
         light: String,
     },
-    /// No object refracts or mirrors.
-    #[error("no caustic can form: no object has a dielectric or mirror material that could focus light")]
+    /// No object sends light on along one direction or a narrow lobe.
+    #[error("no caustic can form: no object has glass, a mirror, metal or a clear coat, which could focus light")]
     NoCaster,
     /// No object can show light.
     #[error(
-        "no caustic can form: every object is a dielectric or a mirror; add a diffuse or phong object to catch light"
+        "no caustic can form: every object is of glass, a mirror or of metal; add one with a diffuse share to catch light"
     )]
     NoReceiver,
-    /// Nothing emits, but the background or the ambient light shows.
-    #[error("no caustic can form: no light emits anything; only the background and the ambient light will show")]
+    /// No light and no surface emits, but the background or the ambient light shows.
+    #[error(
+        "no caustic can form: no light and no surface emits anything; only the background and the ambient light will show"
+    )]
     NoLight,
     /// Nothing emits, and background and ambient light are black.
     #[error(
-        "no caustic can form and the picture will be black: no light emits anything, and the background and the \
-         ambient light are black too; add a light"
+        "no caustic can form and the picture will be black: no light and no surface emits anything, and the background \
+         and the ambient light are black too; add a light"
     )]
     Dark,
     /// Some corners of an OBJ file have no normal or one of length zero.

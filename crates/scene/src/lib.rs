@@ -1,6 +1,6 @@
 //! Scene description for diacaustic: TOML, OBJ and primitives, validated. No GPU.
 //!
-//! [`load_scene`] reads a scene file and the meshes that it names. A [`Scene`] can be built in code as well;
+//! [`load_scene`] reads a scene file and the meshes and images that it names. A [`Scene`] can be built in code as well;
 //! [`Scene::validate`] then checks it the same way.
 //!
 //! ```
@@ -42,25 +42,31 @@
 //! ```
 
 mod camera;
+mod environment_image;
 mod error;
 mod light;
 mod material;
 mod media;
 mod mesh;
+mod metals;
 mod obj;
 mod primitives;
 mod radiance_map;
 mod read_toml;
 mod scene;
 mod solid;
+mod substances;
 mod validate;
 
 pub use camera::Camera;
+pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
 pub use light::{Light, LightKind};
 pub use material::{GLOSSY, Material, MaterialKind, SMOOTH};
 pub use mesh::{Chart, Mesh};
+pub use metals::{METALS, Metal, metal};
 pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
 pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
+pub use substances::{SUBSTANCES, Substance, substance};

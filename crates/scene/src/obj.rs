@@ -29,7 +29,8 @@ pub struct ObjFile {
 /// Reads an OBJ file and the MTL files that it names. Polygons are cut into fans of triangles.
 ///
 /// A material is a dielectric if `illum` is 4, 6, 7 or 9 or it is not opaque (`d`, `Tr`), a mirror if `illum` is 3,
-/// `phong` if `illum` is 2 with a specular colour, and diffuse otherwise.
+/// `phong` if `illum` is 2 with a specular colour, and diffuse otherwise. `Ke` is radiance that it emits, W/(m² sr), unless it
+/// is a dielectric.
 ///
 /// # Errors
 /// If the OBJ file cannot be read or makes no sense. A fault of a material library is a warning.

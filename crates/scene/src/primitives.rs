@@ -9,6 +9,14 @@ use crate::{Chart, Mesh};
 /// Width of the gap between the faces of a box on its energy map, in longest edges of the box.
 const ATLAS_GAP: f32 = 0.02;
 
+/// The largest cosine between the edges of a rectangle.
+const PERPENDICULAR: f32 = 1e-3;
+
+/// Whether two vectors may be the edges of a rectangle.
+pub(crate) fn are_perpendicular(edge_u: Vec3, edge_v: Vec3) -> bool {
+    edge_u.dot(edge_v).abs() <= PERPENDICULAR * edge_u.length() * edge_v.length()
+}
+
 impl Mesh {
     /// The most subdivisions that [`Mesh::sphere`] takes: 4 million triangles.
     pub const MAX_SPHERE_SUBDIVISIONS: u32 = 10;

@@ -1,5 +1,7 @@
 //! Reads scenes from TOML.
 
+mod lights;
+mod materials;
 mod objects;
 mod table;
 
@@ -8,13 +10,12 @@ use std::{fs, path::Path};
 use glam::Vec3;
 
 use self::{
+    lights::LightReader,
+    materials::read_material,
     objects::ObjectReader,
     table::{Document, Table},
 };
-use crate::{
-    Camera, Error, Light, LightKind, Location, Material, MaterialKind, OutputSettings, PixelFilter, RenderSettings,
-    Scene, Subject, ToneCurve, Warning,
-};
+use crate::{Camera, Error, Location, OutputSettings, PixelFilter, RenderSettings, Scene, Subject, ToneCurve, Warning};
 
 /// A scene from a file, valid, with what is odd about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +29,7 @@ pub struct LoadedScene {
 /// Reads a scene from a TOML file; the paths in it are relative to its folder.
 ///
 /// # Errors
-/// If the file or a mesh that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
+/// If the file or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
     let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
     parse_scene(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string())
@@ -37,7 +38,7 @@ pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
 /// Reads a scene from TOML text. Relative paths in it start at `base_dir`; messages call the text `file_name`.
 ///
 /// # Errors
-/// If the text or a mesh that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
+/// If the text or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<LoadedScene, Error> {
     let document = Document::parse(text, file_name)?;
     let sections = Sections::split(document.root())?;
@@ -75,17 +76,15 @@ impl<'d> Sections<'d> {
 
     fn read(&self, base_dir: &Path) -> Result<(Scene, Vec<Warning>), Error> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
-        let mut materials = Vec::new();
-        for (name, table) in &self.materials {
-            materials.push(Material { name: name.clone(), kind: read_material(table)?, emission: Vec3::ZERO });
-        }
+        let read_named = |(name, table): &(String, Table<'_>)| read_material(name, table);
+        let materials = self.materials.iter().map(read_named).collect::<Result<_, _>>()?;
         let mut scene = Scene {
             background: color("background")?,
             ambient: color("ambient")?,
             camera: read_camera(&self.camera)?,
             settings: self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default(),
             output: self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default(),
-            lights: read_lights(&self.lights)?,
+            lights: LightReader::new(base_dir).read_all(&self.lights)?,
             materials: Vec::new(),
             objects: Vec::new(),
         };
@@ -193,77 +192,4 @@ fn read_output(table: &Table<'_>, base_dir: &Path) -> Result<OutputSettings, Err
         tone: table.get("tone").map_or(Ok(default.tone), |entry| entry.choice("tone curve", &tones))?,
         files,
     })
-}
-
-/// What `type` in a material's table stands for.
-#[derive(Clone, Copy)]
-enum MaterialType {
-    Diffuse,
-    Phong,
-    Mirror,
-    Dielectric,
-}
-
-impl MaterialType {
-    const NAMES: [(&str, Self); 4] = [
-        ("diffuse", Self::Diffuse),
-        ("phong", Self::Phong),
-        ("mirror", Self::Mirror),
-        ("dielectric", Self::Dielectric),
-    ];
-
-    fn keys(self) -> &'static [&'static str] {
-        match self {
-            Self::Diffuse => &["type", "albedo"],
-            Self::Phong => &["type", "ambient", "diffuse", "specular", "shininess"],
-            Self::Mirror => &["type", "reflectance"],
-            Self::Dielectric => &["type", "ior", "tint", "absorption"],
-        }
-    }
-}
-
-fn read_material(table: &Table<'_>) -> Result<MaterialKind, Error> {
-    let expected = "the name of a material type: \"diffuse\", \"phong\", \"mirror\" or \"dielectric\"";
-    let material_type = table.require("type", expected)?.choice("material type", &MaterialType::NAMES)?;
-    table.allow_only(material_type.keys())?;
-    let color = |key| table.require(key, "a colour: 3 numbers [r, g, b] or one number for gray")?.color();
-    let color_or = |key, default| table.get(key).map_or(Ok(Vec3::splat(default)), |entry| entry.color());
-    Ok(match material_type {
-        MaterialType::Diffuse => MaterialKind::Diffuse { albedo: color("albedo")? },
-        MaterialType::Phong => MaterialKind::Phong {
-            ambient: color("ambient")?,
-            diffuse: color("diffuse")?,
-            specular: color("specular")?,
-            shininess: table.require("shininess", "a number, the exponent of the lobe")?.number()?,
-        },
-        MaterialType::Mirror => MaterialKind::Mirror { reflectance: color("reflectance")? },
-        MaterialType::Dielectric => MaterialKind::Dielectric {
-            ior: table.require("ior", "a number, the index of refraction")?.number()?,
-            tint: color_or("tint", 1.0)?,
-            absorption: color_or("absorption", 0.0)?,
-            roughness: 0.0,
-            priority: 0,
-        },
-    })
-}
-
-fn read_lights(tables: &[Table<'_>]) -> Result<Vec<Light>, Error> {
-    let mut lights = Vec::new();
-    for (index, table) in tables.iter().enumerate() {
-        table.require("type", "the name of a light type: \"sphere\"")?.choice("light type", &[("sphere", ())])?;
-        table.allow_only(&["type", "name", "center", "radius", "flux"])?;
-        let name = table.get("name").map(|entry| entry.string("a string")).transpose()?;
-        lights.push(Light {
-            name: name.map_or_else(|| format!("light {}", index + 1), str::to_owned),
-            photon_share: 1,
-            kind: LightKind::Sphere {
-                center: table.require("center", "3 numbers [x, y, z], metres")?.vector()?,
-                radius: table.require("radius", "a number, metres")?.number()?,
-                flux: table
-                    .require("flux", "watts for each channel: [r, g, b] or one number for all three")?
-                    .color()?,
-            },
-        });
-    }
-    Ok(lights)
 }

@@ -244,6 +244,7 @@ const CASES: &[(&str, &str, &str)] = &[
         "x.toml:15:8: [render]: seed: expected a whole number, 0 or greater, found the whole number -1",
     ),
     ("seed = 7", "seed = 0x100000000", "x.toml:15:8: [render]: seed is 4294967296; it must be at most 4294967295"),
+    ("max_depth = 32", "max_bounces = 1001", "x.toml:16:1: render: max_bounces is 1001; it must be from 0 to 1000"),
     ("max_depth = 32", "max_depth = 1001", "x.toml:16:1: render: max_depth is 1001; it must be from 1 to 1000"),
     ("map_size = 1024", "map_size = 1", "x.toml:17:1: render: map_size is 1; it must be from 2 to 8192"),
     (
@@ -279,28 +280,28 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "ior = 1.5",
         "iro = 1.5",
-        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, ior, tint, absorption"#,
+        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, ior, substance, tint, absorption, roughness, priority"#,
     ),
     (
         "ior = 1.5",
         "",
-        r#"x.toml:23:1: [materials.glass]: the key "ior" is missing; it takes a number, the index of refraction"#,
+        r#"x.toml:23:1: [materials.glass]: the key "ior" is missing; it takes a number, the index of refraction, or "substance", a name such as "water""#,
     ),
     ("ior = 1.5", "ior = 0", r#"x.toml:25:1: material "glass": ior is 0; it must be finite and greater than 0"#),
     (
         r#"type = "dielectric""#,
         r#"type = "dielectrc""#,
-        r#"x.toml:24:8: [materials.glass]: type: there is no material type "dielectrc"; did you mean "dielectric"? Known names: diffuse, phong, mirror, dielectric"#,
+        r#"x.toml:24:8: [materials.glass]: type: there is no material type "dielectrc"; did you mean "dielectric"? Known names: diffuse, phong, mirror, conductor, dielectric, thin_walled, coated, metallic_roughness"#,
     ),
     (
         r#"type = "dielectric""#,
         r#"type = "metal""#,
-        r#"x.toml:24:8: [materials.glass]: type: there is no material type "metal"; known names: diffuse, phong, mirror, dielectric"#,
+        r#"x.toml:24:8: [materials.glass]: type: there is no material type "metal"; known names: diffuse, phong, mirror, conductor, dielectric, thin_walled, coated, metallic_roughness"#,
     ),
     (
         r#"type = "dielectric""#,
         "",
-        r#"x.toml:23:1: [materials.glass]: the key "type" is missing; it takes the name of a material type: "diffuse", "phong", "mirror" or "dielectric""#,
+        r#"x.toml:23:1: [materials.glass]: the key "type" is missing; it takes the name of a material type, such as "diffuse" or "dielectric""#,
     ),
     (
         r#"type = "dielectric""#,
@@ -325,7 +326,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "albedo = 0.8",
         "albedo = 0.8\nior = 1.5",
-        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo"#,
+        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo, emission"#,
     ),
     (
         "albedo = 0.8",
@@ -345,7 +346,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         r#"type = "sphere""#,
         r#"type = "spher""#,
-        r#"x.toml:41:8: [[lights]] #1: type: there is no light type "spher"; did you mean "sphere"? Known names: sphere"#,
+        r#"x.toml:41:8: [[lights]] #1: type: there is no light type "spher"; did you mean "sphere"? Known names: sphere, rectangle, disk, point, spot, directional, sun, environment"#,
     ),
     ("radius = 0.05", "radius = 0", r#"x.toml:44:1: light "lamp": radius is 0; it must be greater than 0 (metres)"#),
     (
@@ -361,7 +362,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "flux = [35, 35, 35]",
         "power = 35",
-        r#"x.toml:45:1: [[lights]] #1: unknown key "power"; known keys: type, name, center, radius, flux"#,
+        r#"x.toml:45:1: [[lights]] #1: unknown key "power"; known keys: type, name, photon_share, center, radius, flux"#,
     ),
     (
         "center = [1, 2.5, 0.6]",
@@ -472,7 +473,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "translate = [0, 0.1, 0]",
         "map_size = 512",
-        r#"x.toml:50:1: object "ball": map_size is set, but the object is a caster (dielectric or mirror) and only receivers have an energy map; leave it out"#,
+        r#"x.toml:50:1: object "ball": map_size is set, but the object is of glass, a mirror or metal, and only objects with a diffuse share have an energy map; leave it out"#,
     ),
     (
         "translate = [0, 0.1, 0]",

@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use diacaustic_scene::{Chart, MaterialKind, Mesh, ObjFile, Warning, load_obj, parse_obj};
+use diacaustic_scene::{Chart, Material, MaterialKind, Mesh, ObjFile, Warning, load_obj, parse_obj};
 use glam::{Vec2, Vec3};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -16,25 +16,25 @@ fn error(text: &str) -> String {
 }
 
 /// The materials and warnings of a file whose one face has the MTL material `m`, with these lines.
-fn material(lines: &str) -> (Option<MaterialKind>, Vec<Warning>) {
+fn material(lines: &str) -> (Option<Material>, Vec<Warning>) {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("my lib.mtl"), format!("# a library\n\n  newmtl m\n{lines}")).unwrap();
     let path = folder.path().join("m.obj");
     fs::write(&path, format!("mtllib my lib.mtl\n{TRIANGLE}usemtl m\nf 1 2 3\n")).unwrap();
     let file = load_obj(&path).unwrap();
-    (file.materials[0].clone().map(|material| material.kind), file.warnings)
+    (file.materials[0].clone(), file.warnings)
 }
 
 fn kind(lines: &str) -> MaterialKind {
-    let (kind, warnings) = material(lines);
+    let (material, warnings) = material(lines);
     assert_eq!(warnings, []);
-    kind.unwrap()
+    material.unwrap().kind
 }
 
 fn library_problem(lines: &str) -> String {
     match material(lines) {
         (None, warnings) => warnings[0].to_string(),
-        (kind, _) => panic!("accepted as {kind:?}"),
+        (material, _) => panic!("accepted as {material:?}"),
     }
 }
 
@@ -178,13 +178,21 @@ fn mtl_materials_become_the_nearest_kind() {
         MaterialKind::Phong { ambient: Vec3::ZERO, diffuse, specular, shininess: 96.0 }
     );
     assert_eq!(kind("Ks 0.9\nillum 3\n"), MaterialKind::Mirror { reflectance: Vec3::splat(0.9) });
-    let glass = |ior, tint| MaterialKind::Dielectric { ior, tint, absorption: Vec3::ZERO };
+    let glass = |ior, tint| MaterialKind::Dielectric { ior, tint, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 };
     for illum in [4, 6, 7, 9] {
         assert_eq!(kind(&format!("illum {illum}\n")), glass(1.5, Vec3::ONE));
     }
     assert_eq!(kind("Kd 0 0 0\nNi 1.33\nd 0.2\n"), glass(1.33, Vec3::ONE));
     assert_eq!(kind("Kd 1 0.5 0.5\nNi 1.33\nTr 0.8\n"), glass(1.33, Vec3::new(1.0, 0.5, 0.5)));
     assert_eq!(kind("Kd 0 0 1\nTf 0 1 0\nd -halo 0.2\n"), glass(1.5, Vec3::Y));
+}
+
+#[test]
+fn mtl_emission_is_radiance_unless_of_glass() {
+    let emission = |lines| material(lines).0.unwrap().emission;
+    assert_eq!(emission("Kd 0.5\n"), Vec3::ZERO);
+    assert_eq!(emission("Ke 12 3 0.5\n"), Vec3::new(12.0, 3.0, 0.5));
+    assert_eq!(emission("Ke 12 3 0.5\nillum 4\n"), Vec3::ZERO);
 }
 
 #[test]
@@ -196,6 +204,7 @@ fn mtl_faults_are_warnings_with_their_line() {
     ends_with("Kd 1 0\n", "my lib.mtl:4: Kd with 2 numbers; it takes r g b");
     ends_with("Kd\n", "my lib.mtl:4: Kd with 0 numbers; it takes r g b");
     ends_with("Kd 1 0 2\n", "my lib.mtl:4: Kd with 2; it must be from 0 to 1");
+    ends_with("Ke -1 0 0\n", "my lib.mtl:4: Ke with -1; it must be 0 or greater and finite");
     ends_with("Kd spectral a.rfl\n", "my lib.mtl:4: Kd with \"spectral\", which is not a number");
     ends_with("\nNi 0\n", "my lib.mtl:5: Ni with 0; it must be greater than 0 and finite");
     ends_with("Ns nan\n", "my lib.mtl:4: Ns with NaN; it must be 0 or greater and finite");

@@ -2,7 +2,7 @@
 //!
 //! Not through tobj, whose 4.0.5 reader panics on a colour of fewer than three numbers and names no line.
 
-use std::{fs, path::Path};
+use std::{fs, ops::RangeInclusive, path::Path};
 
 use glam::Vec3;
 
@@ -37,7 +37,7 @@ pub(super) fn slot_materials(
         if let Some(entry) = entry.filter(|entry| !entry.textures.is_empty()) {
             warnings.push(Warning::IgnoredTextures { material: slot.clone(), maps: entry.textures.join(", ") });
         }
-        materials.push(entry.map(|entry| Material { name: slot.clone(), kind: entry.kind(), emission: Vec3::ZERO }));
+        materials.push(entry.map(Entry::material));
     }
     materials
 }
@@ -50,6 +50,8 @@ struct Entry {
     diffuse: Option<Vec3>,
     specular: Option<Vec3>,
     transmission: Option<Vec3>,
+    /// Radiance, W/(m² sr).
+    emission: Option<Vec3>,
     shininess: Option<f32>,
     ior: Option<f32>,
     /// 1 for an opaque material.
@@ -60,6 +62,13 @@ struct Entry {
 }
 
 impl Entry {
+    fn material(&self) -> Material {
+        let kind = self.kind();
+        let can_emit = !matches!(kind, MaterialKind::Dielectric { .. });
+        let emission = self.emission.filter(|_| can_emit).unwrap_or(Vec3::ZERO);
+        Material { name: self.name.clone(), kind, emission }
+    }
+
     fn kind(&self) -> MaterialKind {
         let model = self.illumination_model.unwrap_or(0.0);
         let albedo = self.diffuse.unwrap_or(DEFAULT_ALBEDO);
@@ -86,10 +95,11 @@ impl Entry {
 
     fn read_line(&mut self, keyword: &str, words: &[&str]) -> Result<(), String> {
         match keyword {
-            "Ka" => self.ambient = Some(color(keyword, words)?),
-            "Kd" => self.diffuse = Some(color(keyword, words)?),
-            "Ks" => self.specular = Some(color(keyword, words)?),
-            "Tf" => self.transmission = Some(color(keyword, words)?),
+            "Ka" => self.ambient = Some(color(keyword, words, 0.0..=1.0)?),
+            "Kd" => self.diffuse = Some(color(keyword, words, 0.0..=1.0)?),
+            "Ks" => self.specular = Some(color(keyword, words, 0.0..=1.0)?),
+            "Tf" => self.transmission = Some(color(keyword, words, 0.0..=1.0)?),
+            "Ke" => self.emission = Some(color(keyword, words, 0.0..=f32::MAX)?),
             "Ns" => self.shininess = Some(number(keyword, words, 0.0..=f32::MAX)?),
             "Ni" => self.ior = Some(number(keyword, words, f32::MIN_POSITIVE..=f32::MAX)?),
             "d" => self.dissolve = Some(number(keyword, words.strip_prefix(&["-halo"]).unwrap_or(words), 0.0..=1.0)?),
@@ -128,11 +138,11 @@ fn parse_mtl(text: &str, path: &Path) -> Result<Vec<Entry>, Error> {
     Ok(entries)
 }
 
-/// Three shares of light, or one that stands for all three.
-fn color(keyword: &str, words: &[&str]) -> Result<Vec3, String> {
+/// Three channels, or one number that stands for all three.
+fn color(keyword: &str, words: &[&str], allowed: RangeInclusive<f32>) -> Result<Vec3, String> {
     let mut channels = Vec::new();
     for word in words.iter().take(3) {
-        channels.push(number(keyword, &[word], 0.0..=1.0)?);
+        channels.push(number(keyword, &[word], allowed.clone())?);
     }
     match channels[..] {
         [gray] => Ok(Vec3::splat(gray)),
@@ -141,7 +151,7 @@ fn color(keyword: &str, words: &[&str]) -> Result<Vec3, String> {
     }
 }
 
-fn number(keyword: &str, words: &[&str], allowed: std::ops::RangeInclusive<f32>) -> Result<f32, String> {
+fn number(keyword: &str, words: &[&str], allowed: RangeInclusive<f32>) -> Result<f32, String> {
     let Some(word) = words.first() else { return Err(format!("{keyword} without a number")) };
     let number: f32 = word.parse().map_err(|_| format!("{keyword} with {word:?}, which is not a number"))?;
     if allowed.contains(&number) {

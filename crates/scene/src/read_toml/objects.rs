@@ -9,7 +9,7 @@ use std::{
 use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
-use crate::{Error, Material, Mesh, Object, Warning, load_obj};
+use crate::{Error, Material, Mesh, Object, Warning, load_obj, primitives::are_perpendicular};
 
 const OBJECT_KEYS: [&str; 11] = [
     "name",
@@ -28,9 +28,6 @@ const SHAPE_KEYS: [&str; 4] = ["mesh", "sphere", "rectangle", "box"];
 
 /// Subdivisions of a sphere that names none: 16128 triangles.
 const SPHERE_SUBDIVISIONS: u32 = 6;
-
-/// The largest cosine between the edges of a rectangle.
-const PERPENDICULAR: f32 = 1e-3;
 
 /// Reads objects; holds what they share.
 pub(super) struct ObjectReader<'a> {
@@ -139,7 +136,7 @@ impl<'a> ObjectReader<'a> {
                 entry.error(format!("is {}; meshes are read from OBJ files, whose names end in .obj", path.display()))
             );
         }
-        let file = load_obj(&path).map_err(|cause| Error::Mesh {
+        let file = load_obj(&path).map_err(|cause| Error::File {
             at: entry.location(),
             place: entry.place(),
             cause: Box::new(cause),
@@ -265,11 +262,10 @@ fn read_rectangle(table: &Table<'_>) -> Result<Mesh, Error> {
     table.allow_only(&["center", "edge_u", "edge_v"])?;
     let vector = |key| table.require(key, "3 numbers [x, y, z], metres")?.vector();
     let (center, edge_u, edge_v) = (vector("center")?, vector("edge_u")?, vector("edge_v")?);
-    let (length_u, length_v) = (edge_u.length(), edge_v.length());
-    if length_u == 0.0 || length_v == 0.0 {
+    if edge_u.length() == 0.0 || edge_v.length() == 0.0 {
         return Err(table.error("edge_u and edge_v must not have length 0"));
     }
-    if edge_u.dot(edge_v).abs() > PERPENDICULAR * length_u * length_v {
+    if !are_perpendicular(edge_u, edge_v) {
         return Err(table.error("edge_u and edge_v must be perpendicular; for another shape, use an OBJ mesh"));
     }
     Ok(Mesh::rectangle(center, edge_u, edge_v))

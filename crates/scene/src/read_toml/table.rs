@@ -92,6 +92,27 @@ impl<'d> Table<'d> {
         self.get(key).ok_or_else(|| Error::MissingKey { at: self.location(), table: self.name.clone(), key, expected })
     }
 
+    /// The one of two keys that the table has; at least one is required.
+    pub(super) fn either(
+        &self,
+        first: &'static str,
+        second: &'static str,
+        expected: &'static str,
+    ) -> Result<Entry<'d>, Error> {
+        match self.either_if_any(first, second)? {
+            Some(entry) => Ok(entry),
+            None => self.require(first, expected),
+        }
+    }
+
+    /// The one of two keys that the table has, if any; both are refused.
+    pub(super) fn either_if_any(&self, first: &str, second: &str) -> Result<Option<Entry<'d>>, Error> {
+        match (self.get(first), self.get(second)) {
+            (Some(_), Some(entry)) => Err(entry.error(format!("is set, and so is {first}; leave one of them out"))),
+            (entry, other) => Ok(entry.or(other)),
+        }
+    }
+
     /// Every key, in the order of the file.
     pub(super) fn entries(&self) -> Vec<Entry<'d>> {
         let mut entries: Vec<_> = self.entries.iter().collect();
@@ -182,6 +203,15 @@ impl<'d> Entry<'d> {
     pub(super) fn whole32(&self) -> Result<u32, Error> {
         let whole = self.whole()?;
         u32::try_from(whole).map_err(|_| self.error(format!("is {whole}; it must be at most {}", u32::MAX)))
+    }
+
+    /// A whole number of 32 bits, which may be negative.
+    pub(super) fn integer32(&self) -> Result<i32, Error> {
+        let expected = "a whole number";
+        let DeValue::Integer(integer) = self.value.get_ref() else { return Err(self.wrong_type(expected)) };
+        let (least, most) = (i32::MIN, i32::MAX);
+        i32::from_str_radix(integer.as_str(), integer.radix())
+            .map_err(|_| self.error(format!("is {}; it must be from {least} to {most}", integer.as_str())))
     }
 
     /// Three numbers.

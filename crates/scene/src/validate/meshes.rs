@@ -1,0 +1,48 @@
+//! Checks meshes.
+
+use glam::Vec3;
+
+use super::at::{REACH, is_in_reach};
+use crate::{Chart, Mesh};
+
+/// How far the square of a unit normal's length may be from 1.
+const UNIT_TOLERANCE: f32 = 1e-3;
+
+/// What is wrong with a mesh.
+pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
+    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+    let ensure = |ok: bool, problem: &dyn Fn() -> String| if ok { Ok(()) } else { Err(problem()) };
+    ensure(triangles > 0, &|| "has no triangles".to_owned())?;
+    ensure(u32::try_from(vertices).is_ok(), &|| format!("has {vertices} vertices; it must have fewer than 2^32"))?;
+    if let Some(triangle) = mesh.triangles.iter().position(|corners| corners.iter().any(|v| *v as usize >= vertices)) {
+        let corners = mesh.triangles[triangle];
+        return Err(format!("has the triangle {triangle} of vertices {corners:?}, but {vertices} vertices, from 0"));
+    }
+    if let Some(position) = mesh.positions.iter().find(|position| !is_in_reach(**position)) {
+        return Err(format!("has the position {:?}; {REACH}", position.to_array()));
+    }
+    for (what, count) in [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len())] {
+        ensure(count == 0 || count == vertices, &|| format!("has {count} {what}; it must have {vertices} or none"))?;
+    }
+    let is_unit = |normal: &Vec3| (normal.length_squared() - 1.0).abs() <= UNIT_TOLERANCE;
+    ensure(mesh.normals.iter().all(is_unit), &|| "has a normal whose length is not 1".to_owned())?;
+    let has_finite_uvs = mesh.uvs.iter().all(|uv| uv.is_finite());
+    ensure(has_finite_uvs, &|| "has a texture coordinate that is not finite".to_owned())?;
+    ensure(mesh.chart != Chart::Natural || !mesh.uvs.is_empty(), &|| {
+        "has a natural chart but no texture coordinates; give it some or make the chart automatic".to_owned()
+    })?;
+    check_triangle_slots(mesh)?;
+    ensure(mesh.degenerate_triangles() < triangles, &|| format!("has {triangles} triangles, all of zero area"))
+}
+
+/// What is wrong with the material slots of a mesh.
+fn check_triangle_slots(mesh: &Mesh) -> Result<(), String> {
+    let (count, triangles, slots) = (mesh.triangle_slots.len(), mesh.triangles.len(), mesh.material_slots.len());
+    if count != triangles && (slots > 1 || count > 0) {
+        return Err(format!("has {count} triangle slots; it must have {triangles}, one for each triangle"));
+    }
+    match mesh.triangle_slots.iter().find(|slot| **slot as usize >= slots.max(1)) {
+        Some(slot) => Err(format!("has a triangle of material slot {slot}, but {} slots, from 0", slots.max(1))),
+        None => Ok(()),
+    }
+}
