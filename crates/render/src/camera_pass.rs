@@ -6,6 +6,7 @@ use diacaustic_shaders::{CAMERA, CameraParams, TILE_SIZE};
 use crate::{
     Error, Film,
     energy_map::EnergyMaps,
+    features::{Features, Pipelines},
     film::filter_inverse_cdf,
     gpu::{Binding, Gpu, Purpose, wide},
     lights::{Lights, media_keys, medium_index},
@@ -24,21 +25,22 @@ const SEED_STREAM: u32 = 2;
 pub(crate) struct CameraPass {
     params_layout: wgpu::BindGroupLayout,
     outputs_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    pipelines: Pipelines,
 }
 
 impl CameraPass {
     pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
         let params_layout = gpu.layout("camera params", wgpu::ShaderStages::COMPUTE, &PARAMS);
         let outputs_layout = gpu.layout("camera outputs", wgpu::ShaderStages::COMPUTE, &OUTPUTS);
-        let pipeline = gpu.compute_pipeline(CAMERA, &[scene_layout, &params_layout, &outputs_layout]);
-        Self { params_layout, outputs_layout, pipeline }
+        let pipelines = Pipelines::new(CAMERA, &[scene_layout, &params_layout, &outputs_layout]);
+        Self { params_layout, outputs_layout, pipelines }
     }
 }
 
 /// One scene's picture on the device.
 #[derive(Debug)]
 pub(crate) struct Samples {
+    pipeline: wgpu::ComputePipeline,
     /// The params of every sample, but for its index.
     template: CameraParams,
     params: wgpu::Buffer,
@@ -49,11 +51,19 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    pub fn new(gpu: &Gpu, pass: &CameraPass, scene: &Scene, lights: &Lights, maps: &EnergyMaps) -> Result<Self, Error> {
+    pub fn new(
+        gpu: &Gpu,
+        pass: &mut CameraPass,
+        scene: &Scene,
+        lights: &Lights,
+        features: Features,
+        maps: &EnergyMaps,
+    ) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         Ok(Self {
+            pipeline: pass.pipelines.get(gpu, features),
             template: template(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
             outputs_group: gpu.bind_resources(
@@ -66,12 +76,12 @@ impl Samples {
     }
 
     /// Submits one sample of every pixel.
-    pub fn add(&self, gpu: &Gpu, pass: &CameraPass, scene_group: &wgpu::BindGroup, sample_index: u32) {
+    pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, sample_index: u32) {
         let params = CameraParams { sample_index, ..self.template };
         gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         let groups = [scene_group, &self.params_group, &self.outputs_group];
         let tiles = [params.width.div_ceil(TILE_SIZE), params.height.div_ceil(TILE_SIZE)];
-        gpu.dispatch(&pass.pipeline, &groups, tiles);
+        gpu.dispatch(&self.pipeline, &groups, tiles);
     }
 
     /// Reads the picture. Blocks.

@@ -189,6 +189,16 @@ impl Gpu {
 
     /// The pipeline of a compute kernel; `groups` are its bind groups' layouts, in order.
     pub fn compute_pipeline(&self, kernel: Kernel, groups: &[&wgpu::BindGroupLayout]) -> wgpu::ComputePipeline {
+        self.specialised_pipeline(kernel, groups, &[])
+    }
+
+    /// The pipeline of a kernel with values for its override constants.
+    pub fn specialised_pipeline(
+        &self,
+        kernel: Kernel,
+        groups: &[&wgpu::BindGroupLayout],
+        constants: &[(&str, f64)],
+    ) -> wgpu::ComputePipeline {
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(kernel.name),
             source: wgpu::ShaderSource::Wgsl(kernel.source.into()),
@@ -204,7 +214,7 @@ impl Gpu {
             layout: Some(&layout),
             module: &module,
             entry_point: kernel.entry_point,
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
             cache: None,
         })
     }

@@ -27,6 +27,7 @@ mod display_pass;
 mod energy_map;
 mod environment;
 mod error;
+mod features;
 mod film;
 mod gpu;
 mod guide;

@@ -10,6 +10,7 @@ use glam::DVec3;
 use crate::{
     Error, Ledger, LoopLimit,
     energy_map::EnergyMaps,
+    features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose, wide},
     guide::{Block, Emission, blocks},
     lights::{Emitter, Lights},
@@ -34,15 +35,15 @@ const SEED_STREAM: u32 = 1;
 pub(crate) struct PhotonPass {
     params_layout: wgpu::BindGroupLayout,
     outputs_layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    pipelines: Pipelines,
 }
 
 impl PhotonPass {
     pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
         let params_layout = gpu.layout("photon params", wgpu::ShaderStages::COMPUTE, &PARAMS);
         let outputs_layout = gpu.layout("photon outputs", wgpu::ShaderStages::COMPUTE, &OUTPUTS);
-        let pipeline = gpu.compute_pipeline(PHOTONS, &[scene_layout, &params_layout, &outputs_layout]);
-        Self { params_layout, outputs_layout, pipeline }
+        let pipelines = Pipelines::new(PHOTONS, &[scene_layout, &params_layout, &outputs_layout]);
+        Self { params_layout, outputs_layout, pipelines }
     }
 }
 
@@ -53,6 +54,7 @@ struct PhotonLight {
     emission: Emission,
     /// The first of its turns.
     first_turn: u64,
+    pipeline: wgpu::ComputePipeline,
 }
 
 impl PhotonLight {
@@ -92,14 +94,16 @@ pub(crate) struct Targets<'a> {
 impl Photons {
     pub fn new(
         gpu: &Gpu,
-        pass: &PhotonPass,
+        pass: &mut PhotonPass,
         settings: &RenderSettings,
         lights: &Lights,
+        features: Features,
         targets: &Targets,
         maps: &EnergyMaps,
         loop_limit: LoopLimit,
     ) -> Result<Self, Error> {
-        let (photon_lights, turns) = photon_lights(lights, targets.casters);
+        let pipeline = |emitter: &Emitter| pass.pipelines.get(gpu, features.for_photons_of(emitter.kind()));
+        let (photon_lights, turns) = photon_lights(lights, targets.casters, pipeline);
         let largest = photon_lights
             .iter()
             .map(|light| light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns))
@@ -141,13 +145,7 @@ impl Photons {
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.
-    pub fn emit(
-        &self,
-        gpu: &Gpu,
-        pass: &PhotonPass,
-        scene_group: &wgpu::BindGroup,
-        range: Range<u64>,
-    ) -> Result<(), Error> {
+    pub fn emit(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, range: Range<u64>) -> Result<(), Error> {
         // A light's own photons are numbered with 32 bits.
         let largest_share = self.lights.iter().map(|light| light.emitter.photon_share).max().unwrap_or(1);
         let limit = u64::from(u32::MAX / largest_share) * self.turns;
@@ -159,7 +157,7 @@ impl Photons {
                 let lanes = block.count.div_ceil(self.photons_per_invocation);
                 gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.block_params(light, &block, lanes)));
                 let groups = [scene_group, &self.params_group, &self.outputs_group];
-                gpu.dispatch(&pass.pipeline, &groups, [lanes.div_ceil(WORKGROUP_SIZE), 1]);
+                gpu.dispatch(&light.pipeline, &groups, [lanes.div_ceil(WORKGROUP_SIZE), 1]);
             }
         }
         Ok(())
@@ -227,12 +225,21 @@ fn flux_factor(emitter: &Emitter, turns: u64) -> f32 {
 }
 
 /// The lights that emit photons, with their turns, and the number of all turns.
-fn photon_lights(lights: &Lights, casters: &[BoundingSphere]) -> (Vec<PhotonLight>, u64) {
+fn photon_lights(
+    lights: &Lights,
+    casters: &[BoundingSphere],
+    mut pipeline: impl FnMut(&Emitter) -> wgpu::ComputePipeline,
+) -> (Vec<PhotonLight>, u64) {
     let mut turns = 0;
     let mut list = Vec::new();
     for emitter in &lights.emitters {
         if let Some(emission) = Emission::toward(emitter, casters) {
-            list.push(PhotonLight { emitter: emitter.clone(), emission, first_turn: turns });
+            list.push(PhotonLight {
+                emitter: emitter.clone(),
+                emission,
+                first_turn: turns,
+                pipeline: pipeline(emitter),
+            });
             turns += u64::from(emitter.photon_share);
         }
     }

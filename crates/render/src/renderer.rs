@@ -12,6 +12,7 @@ use crate::{
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass, place_maps},
+    features::Features,
     gpu::Gpu,
     lights::{Lights, emissive_materials},
     photon_pass::{PhotonPass, Photons, Targets},
@@ -67,8 +68,7 @@ impl Renderer {
         wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::default() }
     }
 
-    /// Compiles the kernels and tests how the adapter treats long loops. Blocks: seconds on a software adapter that has not
-    /// cached the kernels.
+    /// Compiles the kernels that every scene needs and tests how the adapter treats long loops. Blocks.
     ///
     /// # Errors
     /// If the device's limits are too low, the adapter ends loops too early, or the device fails.
@@ -95,6 +95,9 @@ impl Renderer {
 
     /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
     ///
+    /// Compiles the kernels for what the scene makes use of, if no scene before it did the same. Blocks: seconds on a software adapter
+    /// that has not cached them.
+    ///
     /// # Errors
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
@@ -117,14 +120,24 @@ impl Renderer {
         let casters = caster_bounds(scene, &triangles[..object_triangles]);
         let around = scene_bounds(scene, &triangles);
         let lights = Lights::new(scene, &bvh.triangles, &around);
+        let features = Features::of(scene, &lights);
         let on_device = self.gpu.guarded(|| {
             let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &lights, &placements)?;
             let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
             let targets = Targets { casters: &casters, around };
             let (settings, limit) = (&scene.settings, self.loop_limit);
             Ok(OnDevice {
-                photons: Photons::new(&self.gpu, &self.photon_pass, settings, &lights, &targets, &maps, limit)?,
-                samples: Samples::new(&self.gpu, &self.camera_pass, scene, &lights, &maps)?,
+                photons: Photons::new(
+                    &self.gpu,
+                    &mut self.photon_pass,
+                    settings,
+                    &lights,
+                    features,
+                    &targets,
+                    &maps,
+                    limit,
+                )?,
+                samples: Samples::new(&self.gpu, &mut self.camera_pass, scene, &lights, features, &maps)?,
                 scene: scene.clone(),
                 origins: bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
                 buffers,
@@ -161,7 +174,7 @@ impl Renderer {
             return Ok(());
         }
         let count = numbers.end - numbers.start;
-        on_device.photons.emit(&self.gpu, &self.photon_pass, &on_device.buffers.bind_group, numbers)?;
+        on_device.photons.emit(&self.gpu, &on_device.buffers.bind_group, numbers)?;
         on_device.photon_count += count;
         on_device.unresolved = true;
         Ok(())
@@ -180,7 +193,7 @@ impl Renderer {
         }
         for _ in 0..count {
             let group = &on_device.buffers.bind_group;
-            on_device.samples.add(&self.gpu, &self.camera_pass, group, on_device.sample_count);
+            on_device.samples.add(&self.gpu, group, on_device.sample_count);
             on_device.sample_count += 1;
         }
         Ok(())

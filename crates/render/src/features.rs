@@ -1,0 +1,94 @@
+//! What a scene makes use of: kernels are compiled without the rest (`shaders/layout/features.wgsl`).
+
+use std::collections::HashMap;
+
+use diacaustic_scene::{MaterialKind, SMOOTH, Scene};
+use diacaustic_shaders::{Kernel, light_kind};
+
+use crate::{gpu::Gpu, lights::Lights};
+
+/// What a kernel must be able to do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Features {
+    /// Rough, coated and metallic-rough surfaces.
+    gloss: bool,
+    /// Metals.
+    conductors: bool,
+    /// Points and spots.
+    point_lights: bool,
+    /// Triangles that shine.
+    surface_lights: bool,
+    /// Light from infinitely far.
+    distant_lights: bool,
+    /// An environment.
+    environment: bool,
+    /// The kind of light that emits photons.
+    photon_light_kind: u32,
+}
+
+impl Features {
+    pub fn of(scene: &Scene, lights: &Lights) -> Self {
+        let kinds = || scene.materials.iter().map(|material| &material.kind);
+        let shines = |wanted: &[u32]| lights.emitters.iter().any(|emitter| wanted.contains(&emitter.kind()));
+        Self {
+            gloss: kinds().any(has_gloss),
+            conductors: kinds().any(|kind| matches!(kind, MaterialKind::Conductor { .. })),
+            point_lights: shines(&[light_kind::POINT, light_kind::SPOT]),
+            surface_lights: shines(&[light_kind::SURFACE]),
+            distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
+            environment: shines(&[light_kind::ENVIRONMENT]),
+            photon_light_kind: 0,
+        }
+    }
+
+    /// What the photons of one kind of light need: what other lights need does not count.
+    pub fn for_photons_of(self, kind: u32) -> Self {
+        Self { gloss: self.gloss, conductors: self.conductors, photon_light_kind: kind, ..Self::default() }
+    }
+
+    /// The values of the kernel's override constants.
+    fn constants(self, kernel: Kernel) -> Vec<(&'static str, f64)> {
+        let all = [
+            ("has_gloss", f64::from(self.gloss)),
+            ("has_conductors", f64::from(self.conductors)),
+            ("has_point_lights", f64::from(self.point_lights)),
+            ("has_surface_lights", f64::from(self.surface_lights)),
+            ("has_distant_lights", f64::from(self.distant_lights)),
+            ("has_environment", f64::from(self.environment)),
+            ("photon_light_kind", f64::from(self.photon_light_kind)),
+        ];
+        all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
+    }
+}
+
+fn has_gloss(kind: &MaterialKind) -> bool {
+    match *kind {
+        MaterialKind::Coated { .. } | MaterialKind::MetallicRoughness { .. } => true,
+        MaterialKind::Dielectric { roughness, .. } | MaterialKind::Conductor { roughness, .. } => roughness >= SMOOTH,
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::Phong { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::ThinWalled { .. } => false,
+    }
+}
+
+/// The pipelines of a kernel, one for each set of features that scenes have asked for.
+#[derive(Debug)]
+pub(crate) struct Pipelines {
+    kernel: Kernel,
+    layouts: Vec<wgpu::BindGroupLayout>,
+    made: HashMap<Features, wgpu::ComputePipeline>,
+}
+
+impl Pipelines {
+    pub fn new(kernel: Kernel, layouts: &[&wgpu::BindGroupLayout]) -> Self {
+        Self { kernel, layouts: layouts.iter().copied().cloned().collect(), made: HashMap::new() }
+    }
+
+    /// The pipeline for a set of features, compiled if it is the first to ask.
+    pub fn get(&mut self, gpu: &Gpu, features: Features) -> wgpu::ComputePipeline {
+        let layouts: Vec<_> = self.layouts.iter().collect();
+        let make = || gpu.specialised_pipeline(self.kernel, &layouts, &features.constants(self.kernel));
+        self.made.entry(features).or_insert_with(make).clone()
+    }
+}
