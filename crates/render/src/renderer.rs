@@ -4,7 +4,9 @@ use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_shaders::QueryHit;
-use diacaustic_surface::{Bvh, MapLayout, caster_bounds, light_surfaces, scene_bounds, world_triangles};
+use diacaustic_surface::{
+    Bvh, MapLayout, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
+};
 use glam::Vec3;
 
 use crate::{
@@ -104,6 +106,7 @@ impl Renderer {
         scene.validate()?;
         let start = Instant::now();
         let mut triangles = world_triangles(scene);
+        separate_touching(scene, &mut triangles);
         let object_triangles = triangles.len();
         triangles.extend(light_surfaces(scene));
         let bvh = Bvh::build(&triangles)?;

@@ -7,6 +7,7 @@ mod chart;
 mod error;
 mod light_surfaces;
 mod texel_area;
+mod touching;
 mod triangles;
 
 pub use bounds::{BoundingSphere, caster_bounds, merge_spheres, scene_bounds};
@@ -15,4 +16,5 @@ pub use chart::{MapLayout, uvs_overlap};
 pub use error::Error;
 pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use texel_area::texel_areas;
+pub use touching::{RAY_OFFSET, separate_touching};
 pub use triangles::{WorldTriangle, world_triangles};
