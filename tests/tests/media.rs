@@ -101,7 +101,7 @@ fn seen_through(materials: &str, objects: &str) -> f64 {
     mean(&render(&scene(&format!(
         "ambient = 1
          camera = {{ position = [0, 9, 0], look_at = [0, 0, 0], up = [0, 0, -1], vertical_fov = 0.02 }}
-         render = {{ width = 16, height = 16, samples = 1024, photons = 0, max_depth = 1000 }}
+         render = {{ width = 64, height = 64, samples = 64, photons = 0, max_depth = 1000 }}
          materials.glow = {{ type = \"phong\", ambient = 1, diffuse = 0, specular = 0, shininess = 1 }}
          {materials}
          objects = [
