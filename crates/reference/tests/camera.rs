@@ -95,7 +95,7 @@ fn pixel_shows_irradiance_by_way_of_the_albedo() {
 fn radiance_out_of_glass_takes_eta_squared() {
     let around = block(Vec3::splat(-1.0), Vec3::splat(1.0));
     let lamp = light(Vec3::ZERO, 0.5, 7.0);
-    let radiance_inside = lamp.kind.radiance().as_dvec3();
+    let radiance_inside = lamp.kind.strength().as_dvec3();
     let mut scene = scene(vec![(around, glass(1.5), Vec3::ZERO)], vec![lamp]);
     scene.camera.position = Vec3::new(0.0, 0.0, 500.0);
     scene.camera.vertical_fov = 0.01;
@@ -124,7 +124,8 @@ fn under_a_lens(lens: Mesh) -> (f64, f64, f64) {
     let scene = scene(parts, vec![light(Vec3::new(0.3, 2.2, 0.2), 0.4, 10.0)]);
     let world = World::new(&scene);
     let caster = Sphere { center: DVec3::new(0.0, 0.6, 0.0), radius: 0.4 };
-    let discs = [AimDisc::around(&world.lights()[0], &caster).expect("the lens is far from the light")];
+    let discs =
+        [AimDisc::around(&world.light_sphere(0).expect("a sphere"), &caster).expect("the lens is far from the light")];
     let photons = 1 << 19;
     let emission = Emission::Aimed(&discs);
     let job = PhotonJob { world: &world, maps: &[None, None], light: 0, emission, seed: 1, photons: 0..photons };
