@@ -38,7 +38,8 @@ impl Crossing {
             return Self::Nothing(beyond);
         }
         let ior = |media| world.dielectrics().ior(media);
-        Self::Surface(Surface::new(world, material, ior(&media), ior(&beyond)), beyond)
+        let base = Base::of(kind, world.scene().ambient.as_dvec3(), world.base_albedo(material));
+        Self::Surface(Surface::with_base(kind, base, ior(&media), ior(&beyond)), beyond)
     }
 }
 
@@ -85,9 +86,12 @@ impl Specular {
 
 impl Surface {
     /// The surface of a material between two indices of refraction: on the side of wo and beyond. Materials other than
-    /// dielectrics have the same on both sides.
-    pub fn new(world: &World, material: usize, ior: f64, ior_beyond: f64) -> Self {
-        let kind = &world.scene().materials[material].kind;
+    /// dielectrics have the same on both sides. `ambient` is the scene's radiance of that name, W/(m² sr).
+    pub fn new(kind: &MaterialKind, ambient: DVec3, ior: f64, ior_beyond: f64) -> Self {
+        Self::with_base(kind, Base::of(kind, ambient, resolved_albedo(kind)), ior, ior_beyond)
+    }
+
+    fn with_base(kind: &MaterialKind, base: Option<Base>, ior: f64, ior_beyond: f64) -> Self {
         let (specular, roughness) = match *kind {
             MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => (Specular::None, 0.0),
             MaterialKind::Mirror { reflectance } => (Specular::Mirror { reflectance: reflectance.as_dvec3() }, 0.0),
@@ -111,7 +115,7 @@ impl Surface {
         Self {
             specular,
             microfacets: (roughness >= SMOOTH).then(|| Microfacets::of_roughness(f64::from(roughness))),
-            base: Base::of(kind, world.scene().ambient.as_dvec3(), world.base_albedo(material)),
+            base,
             is_caster: kind.is_caster(),
         }
     }

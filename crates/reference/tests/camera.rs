@@ -10,7 +10,7 @@ use diacaustic_reference::photons::{AimDisc, Emission, PhotonJob, trace};
 use diacaustic_scene::{MaterialKind, Mesh, Scene};
 use glam::{DVec3, Vec3};
 
-use shapes::{absorbing_glass, ball, block, diffuse, floor, glass, light, scene};
+use shapes::{absorbing_glass, ball, block, diffuse, flat, floor, glass, light, scene};
 
 fn in_uniform_light(parts: Vec<(Mesh, MaterialKind, Vec3)>) -> Scene {
     Scene { background: Vec3::ONE, ..scene(parts, Vec::new()) }
@@ -19,8 +19,6 @@ fn in_uniform_light(parts: Vec<(Mesh, MaterialKind, Vec3)>) -> Scene {
 #[test]
 fn furnace_shows_no_glass() {
     let smooth = vec![(ball(1.0, 3), glass(1.5), Vec3::ZERO)];
-    // Flat: interpolated normals do not keep phase space, and nested ones can catch light for good.
-    let flat = |mesh: Mesh| Mesh { normals: Vec::new(), ..mesh };
     let nested = vec![
         (flat(ball(1.0, 3)), glass(1.5), Vec3::ZERO),
         (flat(ball(0.5, 2)), glass(1.8), Vec3::new(0.1, 0.1, 0.0)),
@@ -145,7 +143,7 @@ fn under_a_lens(lens: Mesh) -> (f64, f64, f64) {
 #[test]
 fn photons_and_paths_agree_under_a_lens() {
     let smooth = ball(0.4, 5);
-    let faceted = Mesh { normals: Vec::new(), ..ball(0.4, 3) };
+    let faceted = flat(ball(0.4, 3));
     for lens in [smooth, faceted] {
         let (by_photons, by_paths, deviation) = under_a_lens(lens);
         assert!(deviation < 0.005 * by_paths);

@@ -178,3 +178,98 @@ fn unshadowed(microfacets: &Microfacets, n: DVec3, direction: DVec3, outgoing: D
 fn adjoint(direction: DVec3, outgoing: DVec3, n_s: DVec3, n_g: DVec3) -> f64 {
     (direction.dot(n_s) * outgoing.dot(n_g) / (direction.dot(n_g) * outgoing.dot(n_s))).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use diacaustic_scene::MaterialKind;
+    use glam::Vec3;
+
+    use super::*;
+
+    fn facing(normal_shading: DVec3) -> Facing {
+        Facing { point: DVec3::ZERO, front: true, normal_geometric: DVec3::Z, normal_shading }
+    }
+
+    /// What becomes of a ray in air at a dielectric of the other index beyond, or at another material.
+    fn scatter(kind: &MaterialKind, ior: [f64; 2], normal_shading: DVec3, direction: DVec3, choice: f64) -> Scattered {
+        let surface = Surface::new(kind, DVec3::ZERO, ior[0], ior[1]);
+        let draw = || Draw { choice, microfacet: [0.5; 2] };
+        match surface.scatter(&facing(normal_shading), direction, draw) {
+            Outcome::Passed(scattered) => scattered,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn glass() -> MaterialKind {
+        let (tint, absorption) = (Vec3::splat(0.5), Vec3::ZERO);
+        MaterialKind::Dielectric { ior: 1.5, tint, absorption, roughness: 0.0, priority: 0 }
+    }
+
+    #[test]
+    fn fresnel_decides_between_reflection_and_refraction() {
+        let d = -DVec3::Z;
+        let reflected = scatter(&glass(), [1.0, 1.5], DVec3::Z, d, 0.0399);
+        assert_eq!((reflected.direction, reflected.transmitted, reflected.weight), (DVec3::Z, false, DVec3::ONE));
+        let refracted = scatter(&glass(), [1.0, 1.5], DVec3::Z, d, 0.0401);
+        assert_eq!((refracted.direction, refracted.transmitted), (d, true));
+        assert_eq!((refracted.weight, refracted.eta, refracted.adjoint), (DVec3::splat(0.5), 1.0 / 1.5, 1.0));
+    }
+
+    #[test]
+    fn total_reflection_draws_its_choice_all_the_same() {
+        let d = DVec3::new(0.9, 0.0, -0.19f64.sqrt());
+        let mut draws = 0;
+        let draw = || {
+            draws += 1;
+            Draw { choice: 0.999, microfacet: [0.5; 2] }
+        };
+        let outcome = Surface::new(&glass(), DVec3::ZERO, 1.5, 1.0).scatter(&facing(DVec3::Z), d, draw);
+        assert!(matches!(outcome, Outcome::Passed(scattered) if !scattered.transmitted));
+        assert_eq!(draws, 1);
+    }
+
+    #[test]
+    fn mirrors_draw_nothing() {
+        let mirror = Surface::new(&MaterialKind::Mirror { reflectance: Vec3::ONE }, DVec3::ZERO, 1.0, 1.0);
+        mirror.scatter(&facing(DVec3::Z), -DVec3::Z, || panic!("a mirror draws no choice"));
+    }
+
+    #[test]
+    fn reflection_into_the_surface_falls_back_to_the_flat_normal() {
+        let mirror = MaterialKind::Mirror { reflectance: Vec3::ONE };
+        let leaning = DVec3::new(-0.6, 0.0, 0.8);
+        let d = DVec3::new(-1.0, 0.0, -1.0).normalize();
+        assert!(reflect(d, leaning).z < 0.0);
+        let scattered = scatter(&mirror, [1.0; 2], leaning, d, 0.0);
+        assert!(scattered.direction.distance(reflect(d, DVec3::Z)) < 1e-15);
+        assert_eq!(scattered.adjoint, 1.0);
+    }
+
+    #[test]
+    fn adjoint_factor_of_a_leaning_mirror() {
+        let mirror = MaterialKind::Mirror { reflectance: Vec3::ONE };
+        let scattered = scatter(&mirror, [1.0; 2], DVec3::new(0.6, 0.0, 0.8), -DVec3::Z, 0.0);
+        // wi·n_s = wo·n_s, wi·n_g = 1, and wo = (0.96, 0, 0.28).
+        assert!((scattered.adjoint - 0.28).abs() < 1e-15);
+    }
+
+    #[test]
+    fn thin_wall_reflects_with_all_inner_reflections_and_passes_straight() {
+        let wall = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
+        let (leaning, d) = (DVec3::new(0.1, 0.0, 1.0).normalize(), DVec3::new(0.6, 0.0, -0.8));
+        let f = crate::fresnel::reflectance(-d.dot(leaning), 1.0 / 1.5);
+        let share = 2.0 * f / (1.0 + f);
+        assert!(!scatter(&wall, [1.0; 2], leaning, d, share - 1e-9).transmitted);
+        let passed = scatter(&wall, [1.0; 2], leaning, d, share + 1e-9);
+        assert!(passed.transmitted && passed.direction.distance(d) < 1e-15);
+        assert_eq!((passed.weight, passed.eta, passed.adjoint), (DVec3::ONE, 1.0, 1.0));
+    }
+
+    #[test]
+    fn conductor_is_relative_to_the_medium() {
+        let gold = MaterialKind::Conductor { eta: Vec3::splat(0.2), k: Vec3::splat(3.0), roughness: 0.0 };
+        let weight = scatter(&gold, [1.33; 2], DVec3::Z, -DVec3::Z, 0.0).weight.x;
+        let expected = crate::fresnel::conductor(1.0, f64::from(0.2f32) / 1.33, 3.0 / 1.33);
+        assert!((weight - expected).abs() < 1e-14);
+    }
+}

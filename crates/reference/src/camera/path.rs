@@ -32,6 +32,7 @@ struct Walk<'a> {
 }
 
 /// What stops a chain of casters.
+#[expect(clippy::large_enum_variant, reason = "one lives at a time")]
 enum ChainEnd {
     /// No surface: the sky.
     Open,

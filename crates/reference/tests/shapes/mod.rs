@@ -1,5 +1,7 @@
 //! Meshes and scenes for the tests.
 
+#![allow(dead_code, reason = "no file of tests uses all of them")]
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -73,6 +75,16 @@ pub fn absorbing_glass(ior: f32, absorption: f32) -> MaterialKind {
 /// Smooth glass of priority 0.
 pub fn tinted_glass(ior: f32, tint: Vec3, absorption: Vec3) -> MaterialKind {
     MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority: 0 }
+}
+
+/// Clear rough glass.
+pub fn frosted(ior: f32, roughness: f32) -> MaterialKind {
+    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness, priority: 0 }
+}
+
+/// The same mesh in flat facets: interpolated normals do not keep phase space, and nested ones can catch light for good.
+pub fn flat(mesh: Mesh) -> Mesh {
+    Mesh { normals: Vec::new(), ..mesh }
 }
 
 /// A grey Lambertian surface.
