@@ -119,7 +119,7 @@ fn white_bases_give_back_all_that_enters() {
         for kind in [coated, plastic, metal] {
             for (seen, deviation) in shown(kind.clone()) {
                 assert!((seen - 1.0).abs() < 4.0 * deviation + 2e-3, "{kind:?}: {seen} ± {deviation}");
-                assert!(deviation < 2e-3, "{kind:?}: ± {deviation}");
+                assert!(deviation < 3e-3, "{kind:?}: ± {deviation}");
             }
         }
     }
