@@ -52,7 +52,7 @@ fn via_casters_on_bin(world: &World, region: &Region, bin: usize, samples: u32) 
 
 fn assert_agree(traced: &Estimate, found: &Estimate, systematic: f64, name: &str) {
     let deviation = (traced.variance.x + found.variance.x).sqrt();
-    assert!(deviation < 0.03 * found.mean.x, "{name}: ± {deviation} of {} is too loose", found.mean.x);
+    assert!(deviation < 0.05 * found.mean.x, "{name}: ± {deviation} of {} is too loose", found.mean.x);
     let difference = (traced.mean.x - found.mean.x).abs();
     let allowed = 4.5 * deviation + systematic * found.mean.x;
     assert!(
@@ -67,7 +67,7 @@ fn assert_agree(traced: &Estimate, found: &Estimate, systematic: f64, name: &str
 fn assert_both_ways(scene: &Scene, bins: usize, samples: u32, name: &str) {
     let world = World::new(scene);
     let region = floor_region(bins);
-    let traced = irradiance_on(&world, &region, Some(&around_the_ball()), 2_000_000, 3).via_casters;
+    let traced = irradiance_on(&world, &region, Some(&around_the_ball()), 500_000, 3).via_casters;
     for (bin, traced) in traced.iter().enumerate() {
         let found = via_casters_on_bin(&world, &region, bin, samples);
         assert_agree(traced, &found, 0.005, &format!("{name}, bin {bin}"));
@@ -77,7 +77,7 @@ fn assert_both_ways(scene: &Scene, bins: usize, samples: u32, name: &str) {
 #[test]
 fn sphere_light_through_a_glass_ball() {
     let lamp = || light(Vec3::new(0.3, 2.2, 0.2), 0.4, 10.0);
-    assert_both_ways(&under_a_ball(fine_ball(), glass(1.4), lamp()), 2, 1500, "smooth");
+    assert_both_ways(&under_a_ball(fine_ball(), glass(1.4), lamp()), 2, 2500, "smooth");
     assert_both_ways(&under_a_ball(flat(ball(RADIUS as f32, 3)), glass(1.4), lamp()), 2, 2500, "facets");
 }
 
@@ -125,7 +125,7 @@ fn point_light_by_way_of_rough_balls() {
         under_a_ball(flat(ball(RADIUS as f32, 3)), kind, named(LightKind::Point { position, flux: Vec3::splat(10.0) }))
     };
     assert_both_ways(&side(metal), 1, 5000, "metal");
-    assert_both_ways(&side(varnish), 1, 10_000, "varnish");
+    assert_both_ways(&side(varnish), 1, 20_000, "varnish");
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn restricted_emission_leaves_nothing_out() {
     let scene = under_a_ball(fine_ball(), glass(1.4), point(10.0));
     let world = World::new(&scene);
     let traced = |through: Option<&Sphere>, photons| irradiance_on(&world, &floor_region(1), through, photons, 3);
-    let Lighting { via_casters: all, .. } = traced(None, 4_000_000);
-    let Lighting { via_casters: aimed, .. } = traced(Some(&around_the_ball()), 1_000_000);
+    let Lighting { via_casters: all, .. } = traced(None, 2_000_000);
+    let Lighting { via_casters: aimed, .. } = traced(Some(&around_the_ball()), 200_000);
     assert_agree(&aimed[0], &all[0], 0.0, "aimed");
 }
 
@@ -154,7 +154,7 @@ const WIDE: Sphere = Sphere { center: DVec3::new(0.1, 0.6, 0.0), radius: 0.6 };
 fn by_photons(world: &World) -> f64 {
     // The first lies within the second.
     let casters = [around_the_ball(), WIDE];
-    let photons = 1 << 20;
+    let photons = 1 << 18;
     let at = DVec2::new;
     let corners = vec![[at(0.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)], [at(0.0, 0.0), at(1.0, 1.0), at(1.0, 0.0)]];
     let mut maps = vec![None; world.scene().objects.len()];
@@ -191,11 +191,11 @@ fn photons_bring_what_light_tracing_finds() {
             let parts = vec![(floor(0.3), diffuse(0.5), Vec3::ZERO), ball, extra(other.clone()), inner];
             let scene = scene(parts, vec![named(light.clone())]);
             let world = World::new(&scene);
-            let traced = irradiance_on(&world, &floor_region(1), Some(&WIDE), 1_000_000, 3);
+            let traced = irradiance_on(&world, &floor_region(1), Some(&WIDE), 300_000, 3);
             let (expected, deviation) = (traced.via_casters[0].mean.x, traced.via_casters[0].variance.x.sqrt());
             let found = by_photons(&world);
             let tolerance = 4.5 * deviation + 0.003 * expected;
-            assert!(tolerance < 0.03 * expected, "{light:?}: {expected} ± {tolerance} is too loose");
+            assert!(tolerance < 0.05 * expected, "{light:?}: {expected} ± {tolerance} is too loose");
             assert!((found - expected).abs() < tolerance, "{light:?}: {found} by photons, {expected} ± {tolerance}");
         }
     }
