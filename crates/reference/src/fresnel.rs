@@ -1,6 +1,11 @@
-//! Reflectance of a smooth boundary between dielectrics.
+//! Reflectance of smooth boundaries.
+
+use glam::DVec3;
 
 use crate::snell::cos_transmitted;
+
+/// Panels of Simpson's rule over the hemisphere.
+const PANELS: u32 = 1024;
 
 /// The share of unpolarised light that is reflected, (r_s² + r_p²)/2 by Fresnel's equations, at cos θi on the side that
 /// the light comes from. `eta` = index on that side / index on the other. 1 on total internal reflection.
@@ -11,9 +16,65 @@ pub fn reflectance(cos_i: f64, eta: f64) -> f64 {
     0.5 * (r_s * r_s + r_p * r_p)
 }
 
+/// The share of unpolarised light that a conductor of index n + ik, relative to the medium around it, reflects at cos θ:
+/// Fresnel's equations, exact.
+pub fn conductor(cos: f64, n: f64, k: f64) -> f64 {
+    let (c, s) = (cos * cos, 1.0 - cos * cos);
+    let real = n * n - k * k - s;
+    let sum = (real * real + 4.0 * n * n * k * k).sqrt();
+    let a = (0.5 * (sum + real)).max(0.0).sqrt();
+    let r_s = (sum - 2.0 * a * cos + c) / (sum + 2.0 * a * cos + c);
+    let r_p = r_s * (c * sum - 2.0 * a * cos * s + s * s) / (c * sum + 2.0 * a * cos * s + s * s);
+    0.5 * (r_s + r_p)
+}
+
+/// Schlick's approximation from the reflectance f₀ at normal incidence (Schlick 1994).
+pub fn schlick(cos: f64, f0: DVec3) -> DVec3 {
+    f0 + (1.0 - f0) * (1.0 - cos).powi(5)
+}
+
+/// The share of a dielectric's diffuse illumination that it reflects, 2∫F(μ)μ dμ over 0 … 1, `eta` as in
+/// [`reflectance`].
+pub fn diffuse_reflectance(eta: f64) -> f64 {
+    let step = 1.0 / f64::from(PANELS);
+    let at = |mu: f64| 2.0 * mu * reflectance(mu, eta);
+    let simpson = |panel: u32| {
+        let first = f64::from(panel) * step;
+        step / 6.0 * (at(first) + 4.0 * at(first + 0.5 * step) + at(first + step))
+    };
+    (0..PANELS).map(simpson).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn conductor_at_normal_incidence() {
+        // Gold at 650 nm and at 450 nm: ((n − 1)² + k²)/((n + 1)² + k²).
+        for (n, k) in [(0.156, 3.80), (1.381, 1.916), (2.0, 0.0f64)] {
+            let expected = ((n - 1.0f64).powi(2) + k * k) / ((n + 1.0).powi(2) + k * k);
+            assert!((conductor(1.0, n, k) - expected).abs() < 1e-14);
+        }
+        assert!((conductor(0.0, 0.2, 3.0) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn conductor_without_extinction_is_a_dielectric() {
+        for cos in [0.05, 0.3, 0.8, 1.0] {
+            assert!((conductor(cos, 1.5, 0.0) - reflectance(cos, 1.0 / 1.5)).abs() < 1e-14);
+            assert!((conductor(cos, 1.0 / 1.5, 0.0) - reflectance(cos, 1.5)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn diffuse_light_on_glass() {
+        // Duntley 1942, for n = 1.5.
+        assert!((diffuse_reflectance(1.0 / 1.5) - 0.0918).abs() < 1e-4);
+        // Reciprocity: 1 − F_in = (1 − F_ex)/n².
+        let inside = 1.0 - (1.0 - diffuse_reflectance(1.0 / 1.5)) / 2.25;
+        assert!((diffuse_reflectance(1.5) - inside).abs() < 1e-4);
+    }
 
     fn at(degrees: f64, eta: f64) -> f64 {
         reflectance(degrees.to_radians().cos(), eta)

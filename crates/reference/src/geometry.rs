@@ -1,12 +1,22 @@
-//! The scene as rays meet it: world-space triangles under a BVH, and the lights' spheres.
+//! The scene as rays meet it: world-space triangles under a BVH, and the lights' surfaces.
 
 mod bvh;
+mod disk;
+mod light_shape;
+mod rectangle;
 mod sphere;
 mod triangle;
 
-use diacaustic_scene::{LightKind, MaterialKind, Scene};
-use glam::DVec3;
+use diacaustic_scene::{Light, MaterialKind, Scene};
+use glam::{DVec3, Vec3};
 
+use crate::bsdf;
+use crate::lights::{self, EmissiveSurfaces, Environment};
+use crate::media::{Dielectrics, Media};
+
+pub use self::disk::Disk;
+pub use self::light_shape::LightShape;
+pub use self::rectangle::Rectangle;
 pub use self::sphere::Sphere;
 pub use self::triangle::{Facing, Triangle};
 
@@ -31,7 +41,7 @@ impl Ray {
     }
 }
 
-/// What a ray starts on. Flat triangles and spheres seen from outside cannot be met again by a ray that leaves them.
+/// What a ray starts on. Flat triangles and lights left on the side that shines cannot be met again by a ray that leaves them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Departure {
     /// Nothing.
@@ -58,15 +68,24 @@ pub struct Hit {
 pub enum Meeting {
     /// A triangle.
     Surface(Hit),
-    /// A light's sphere.
+    /// A light's surface.
     Light {
         /// Index of the light in the scene.
         light: usize,
         /// Distance along the ray, metres.
         distance: f64,
-        /// Whether the ray comes from outside the sphere.
-        outside: bool,
+        /// Whether the ray comes from the side that shines.
+        front: bool,
     },
+}
+
+/// What a shadow ray is meant to reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The surface of the light of this index in the scene.
+    Light(usize),
+    /// A place: a point, a triangle, or infinitely far.
+    Place,
 }
 
 /// A scene made ready for rays. Building it takes some time (a BVH), so build it once.
@@ -74,9 +93,15 @@ pub enum Meeting {
 pub struct World<'a> {
     scene: &'a Scene,
     triangles: Vec<Triangle>,
-    lights: Vec<Sphere>,
+    light_shapes: Vec<Option<LightShape>>,
+    light_media: Vec<Media>,
     bvh: Bvh,
     epsilon: f64,
+    bounds: Sphere,
+    dielectrics: Dielectrics,
+    base_albedos: Vec<DVec3>,
+    environment: Option<Environment>,
+    emissive: EmissiveSurfaces,
 }
 
 impl<'a> World<'a> {
@@ -84,16 +109,23 @@ impl<'a> World<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let triangles = triangle::flatten(scene);
         let bvh = Bvh::build(&triangles);
-        let epsilon = RELATIVE_EPSILON * bvh.extent();
-        let lights = scene
-            .lights
-            .iter()
-            .map(|light| {
-                let LightKind::Sphere { center, radius, .. } = light.kind;
-                Sphere { center: center.as_dvec3(), radius: f64::from(radius) }
-            })
-            .collect();
-        Self { scene, triangles, lights, bvh, epsilon }
+        let light_shapes: Vec<_> = scene.lights.iter().map(|light| LightShape::of(&light.kind)).collect();
+        let dielectrics = Dielectrics::of(scene);
+        let position = |light: &Light| lights::position_of(&light.kind);
+        let around = |point| dielectrics.around(scene, point);
+        Self {
+            scene,
+            light_media: scene.lights.iter().map(|l| position(l).map_or(Media::AIR, around)).collect(),
+            epsilon: RELATIVE_EPSILON * bvh.extent(),
+            bounds: bounding_sphere(&triangles, &light_shapes),
+            base_albedos: scene.materials.iter().map(|material| bsdf::resolved_albedo(&material.kind)).collect(),
+            environment: Environment::of(scene),
+            emissive: EmissiveSurfaces::of(scene, &triangles, &dielectrics),
+            triangles,
+            light_shapes,
+            bvh,
+            dielectrics,
+        }
     }
 
     /// The scene that it was built from.
@@ -106,9 +138,25 @@ impl<'a> World<'a> {
         &self.triangles
     }
 
-    /// The spheres of the scene's lights.
-    pub fn lights(&self) -> &[Sphere] {
-        &self.lights
+    /// For each of the scene's lights, its surface, if rays can meet it.
+    pub fn light_shapes(&self) -> &[Option<LightShape>] {
+        &self.light_shapes
+    }
+
+    /// The sphere of a spherical light; none if the light is of another kind.
+    ///
+    /// # Panics
+    /// If the scene has no such light.
+    pub fn light_sphere(&self, light: usize) -> Option<Sphere> {
+        self.light_shapes[light].as_ref()?.as_sphere()
+    }
+
+    /// What encloses a light of the scene.
+    ///
+    /// # Panics
+    /// If the scene has no such light.
+    pub fn light_media(&self, light: usize) -> Media {
+        self.light_media[light]
     }
 
     /// The length under which a distance counts as none, metres.
@@ -116,37 +164,97 @@ impl<'a> World<'a> {
         self.epsilon
     }
 
-    /// The material that a ray meets at a triangle.
-    pub fn material(&self, triangle: usize) -> &'a MaterialKind {
-        let Triangle { object, index, .. } = self.triangles[triangle];
-        &self.scene.materials[self.scene.objects[object].material_of(index)].kind
+    /// A sphere around all triangles and lights that rays can meet.
+    pub fn bounds(&self) -> Sphere {
+        self.bounds
     }
 
-    /// The nearest triangle or light sphere along a ray, or none.
+    /// The scene's dielectrics.
+    pub fn dielectrics(&self) -> &Dielectrics {
+        &self.dielectrics
+    }
+
+    /// The list of the dielectrics that enclose a point.
+    pub fn media_around(&self, point: Vec3) -> Media {
+        self.dielectrics.around(self.scene, point)
+    }
+
+    /// Index in the scene of the material that a ray meets at a triangle.
+    pub fn material_index(&self, triangle: usize) -> usize {
+        let Triangle { object, index, .. } = self.triangles[triangle];
+        self.scene.objects[object].material_of(index)
+    }
+
+    /// The material that a ray meets at a triangle.
+    pub fn material(&self, triangle: usize) -> &'a MaterialKind {
+        &self.scene.materials[self.material_index(triangle)].kind
+    }
+
+    /// Radiance that a triangle's front sends in each direction, W/(m² sr).
+    pub fn emission(&self, triangle: usize) -> DVec3 {
+        self.scene.materials[self.material_index(triangle)].emission.as_dvec3()
+    }
+
+    /// ρ\* of a material's base.
+    pub(crate) fn base_albedo(&self, material: usize) -> DVec3 {
+        self.base_albedos[material]
+    }
+
+    pub(crate) fn environment(&self) -> Option<&Environment> {
+        self.environment.as_ref()
+    }
+
+    pub(crate) fn emissive(&self) -> &EmissiveSurfaces {
+        &self.emissive
+    }
+
+    /// The nearest triangle or light along a ray, or none.
     pub fn meet(&self, ray: &Ray, from: Departure) -> Option<Meeting> {
         let hit = self.bvh.nearest(ray, self.epsilon, f64::INFINITY, skipped_triangle(from));
         let mut limit = hit.map_or(f64::INFINITY, |hit| hit.distance);
         let mut nearest = hit.map(Meeting::Surface);
-        for (light, sphere) in self.lights.iter().enumerate() {
+        for (light, shape) in self.shapes() {
             if from == Departure::Light(light) {
                 continue;
             }
-            if let Some((distance, outside)) = sphere.meet(ray, self.epsilon)
+            if let Some((distance, front)) = shape.meet(ray, self.epsilon)
                 && distance < limit
             {
                 limit = distance;
-                nearest = Some(Meeting::Light { light, distance, outside });
+                nearest = Some(Meeting::Light { light, distance, front });
             }
         }
         nearest
     }
 
-    /// Whether anything but the light `toward` stands within `distance` metres along a ray.
-    pub fn occluded(&self, ray: &Ray, distance: f64, from: Departure, toward: usize) -> bool {
-        self.lights.iter().enumerate().any(|(light, sphere)| {
-            light != toward && sphere.meet(ray, self.epsilon).is_some_and(|(met, _)| met < distance)
+    /// Whether anything but the target stands within `distance` metres along a ray.
+    pub fn occluded(&self, ray: &Ray, distance: f64, from: Departure, toward: Target) -> bool {
+        self.shapes().any(|(light, shape)| {
+            toward != Target::Light(light) && shape.meet(ray, self.epsilon).is_some_and(|(met, _)| met < distance)
         }) || self.bvh.any(ray, self.epsilon, distance, skipped_triangle(from))
     }
+
+    fn shapes(&self) -> impl Iterator<Item = (usize, &LightShape)> {
+        self.light_shapes.iter().enumerate().filter_map(|(light, shape)| Some((light, shape.as_ref()?)))
+    }
+}
+
+/// About the middle of the corners' box.
+fn bounding_sphere(triangles: &[Triangle], lights: &[Option<LightShape>]) -> Sphere {
+    let spheres: Vec<Sphere> = lights.iter().flatten().map(LightShape::bounding_sphere).collect();
+    let points = || triangles.iter().flat_map(|triangle| triangle.corners);
+    let grown = |(min, max): (DVec3, DVec3), p: DVec3, r: f64| (min.min(p - r), max.max(p + r));
+    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let boxed = points().fold(empty, |bounds, p| grown(bounds, p, 0.0));
+    let (min, max) = spheres.iter().fold(boxed, |bounds, sphere| grown(bounds, sphere.center, sphere.radius));
+    if min.x > max.x {
+        return Sphere { center: DVec3::ZERO, radius: 0.0 };
+    }
+    let center = 0.5 * (min + max);
+    let reaches = points()
+        .map(|p| p.distance(center))
+        .chain(spheres.iter().map(|sphere| sphere.center.distance(center) + sphere.radius));
+    Sphere { center, radius: reaches.fold(0.0, f64::max) }
 }
 
 fn skipped_triangle(from: Departure) -> Option<usize> {

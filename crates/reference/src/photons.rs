@@ -54,7 +54,8 @@ pub struct PhotonResult {
 /// Traces every photon of the job. The result does not depend on the number of threads.
 ///
 /// # Panics
-/// If the light, a map or a texel coordinate that the job should have is missing.
+/// If the light is a surface (a rectangle, a disk, an emissive material) or an environment, or its emission is meant for
+/// another kind of light; if a map or a texel coordinate that the job should have is missing.
 pub fn trace(job: &PhotonJob) -> PhotonResult {
     let empty = |layout: &Option<MapLayout>| vec![DVec3::ZERO; layout.as_ref().map_or(0, MapLayout::texels)];
     let mut result = PhotonResult { maps: job.maps.iter().map(empty).collect(), ledger: Ledger::default() };
@@ -74,6 +75,9 @@ pub fn trace(job: &PhotonJob) -> PhotonResult {
 }
 
 /// The path of one photon of the job's light, which need not be in the job's range.
+///
+/// # Panics
+/// If the light is not one that [`trace`] takes.
 pub fn trace_one(job: &PhotonJob, photon: u32) -> PhotonPath {
     flight::fly(job, &Emitter::new(job), photon)
 }

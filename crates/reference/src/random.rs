@@ -1,5 +1,7 @@
 //! The random numbers of a photon, as `docs/photon-paths.md` defines them.
 
+use crate::bsdf::Draw;
+
 /// Wellons' low-bias hash of 32 bits.
 pub fn hash(x: u32) -> u32 {
     let x = (x ^ (x >> 16)).wrapping_mul(0x21f0_aaad);
@@ -89,18 +91,21 @@ pub fn unit(x: u32) -> f64 {
     f64::from(x >> 8) / f64::from(1 << 24)
 }
 
+/// First key of the numbers of microfacets.
+const MICROFACETS: u32 = 4096;
+
 /// The numbers of one photon.
 #[derive(Clone, Debug)]
 pub struct PhotonNumbers {
     key: u32,
     photon: u32,
-    choices: u32,
+    casters: u32,
 }
 
 impl PhotonNumbers {
     /// The numbers of a photon of the light of index `light`.
     pub fn new(seed: u32, light: u32, photon: u32) -> Self {
-        Self { key: combine(combine(seed, 1), light), photon, choices: 0 }
+        Self { key: combine(combine(seed, 1), light), photon, casters: 0 }
     }
 
     /// The emission number u_k, k = 0 to 4.
@@ -108,15 +113,28 @@ impl PhotonNumbers {
         unit(owen(sobol(self.photon, dimension), combine(self.key, dimension as u32)))
     }
 
-    /// The number of the next choice between reflection and refraction.
-    pub fn next_choice(&mut self) -> f64 {
-        let choice = self.choices;
-        self.choices += 1;
-        if choice == 0 {
+    /// The numbers of the next caster.
+    pub fn next_caster(&mut self) -> Draw {
+        let caster = self.casters;
+        self.casters += 1;
+        Draw { choice: self.choice(caster), microfacet: self.microfacet(caster) }
+    }
+
+    fn choice(&self, caster: u32) -> f64 {
+        if caster == 0 {
             return self.emission(4);
         }
-        let shuffled = owen(self.photon, combine(self.key, 16 + 2 * choice)).reverse_bits();
-        unit(owen(shuffled, combine(self.key, 17 + 2 * choice)))
+        let shuffled = owen(self.photon, combine(self.key, 16 + 2 * caster)).reverse_bits();
+        unit(owen(shuffled, combine(self.key, 17 + 2 * caster)))
+    }
+
+    fn microfacet(&self, caster: u32) -> [f64; 2] {
+        let k = MICROFACETS + 2 * caster;
+        let shuffled = owen(self.photon, combine(self.key, 16 + 2 * k));
+        [
+            unit(owen(shuffled.reverse_bits(), combine(self.key, 17 + 2 * k))),
+            unit(owen(sobol(shuffled, 1), combine(self.key, 18 + 2 * k))),
+        ]
     }
 }
 
@@ -128,7 +146,7 @@ mod tests {
 
     fn choice_of(photon: u32, choice: u32) -> f64 {
         let mut numbers = PhotonNumbers::new(7, 2, photon);
-        (0..=choice).fold(0.0, |_, _| numbers.next_choice())
+        (0..=choice).fold(0.0, |_, _| numbers.next_caster().choice)
     }
 
     /// Whether each of 2^k intervals [i, i + 1)/2^k holds one of the 2^k values.
@@ -220,6 +238,18 @@ mod tests {
     }
 
     #[test]
+    fn microfacet_numbers_are_nets_in_the_plane() {
+        let k = 10;
+        for caster in 0..4 {
+            let points: Vec<_> = (0..1 << k)
+                .map(|photon| PhotonNumbers::new(7, 2, photon).microfacet(caster))
+                .map(|[x, y]| ((x * 2f64.powi(32)) as u32, (y * 2f64.powi(32)) as u32))
+                .collect();
+            assert!(is_net_2d(&points, k), "caster {caster}");
+        }
+    }
+
+    #[test]
     fn hash_spreads_neighbours() {
         let points = (0..1 << 16).map(|x| (unit(hash(x)), unit(combine(x, 1))));
         assert!((chi_squared_ratio(points) - 1.0).abs() < 0.4);
@@ -228,7 +258,7 @@ mod tests {
     #[test]
     fn choice_zero_is_the_fifth_emission_number() {
         let numbers = PhotonNumbers::new(11, 3, 12345);
-        assert_eq!(numbers.clone().next_choice(), numbers.emission(4));
+        assert_eq!(numbers.clone().next_caster().choice, numbers.emission(4));
     }
 
     #[test]

@@ -10,7 +10,7 @@ use diacaustic_reference::photons::{AimDisc, Emission, PhotonJob, trace};
 use diacaustic_scene::{MaterialKind, Mesh, Scene};
 use glam::{DVec3, Vec3};
 
-use shapes::{absorbing_glass, ball, block, diffuse, floor, glass, light, scene};
+use shapes::{absorbing_glass, ball, block, diffuse, flat, floor, glass, light, scene};
 
 fn in_uniform_light(parts: Vec<(Mesh, MaterialKind, Vec3)>) -> Scene {
     Scene { background: Vec3::ONE, ..scene(parts, Vec::new()) }
@@ -19,8 +19,6 @@ fn in_uniform_light(parts: Vec<(Mesh, MaterialKind, Vec3)>) -> Scene {
 #[test]
 fn furnace_shows_no_glass() {
     let smooth = vec![(ball(1.0, 3), glass(1.5), Vec3::ZERO)];
-    // Flat: interpolated normals do not keep phase space, and nested ones can catch light for good.
-    let flat = |mesh: Mesh| Mesh { normals: Vec::new(), ..mesh };
     let nested = vec![
         (flat(ball(1.0, 3)), glass(1.5), Vec3::ZERO),
         (flat(ball(0.5, 2)), glass(1.8), Vec3::new(0.1, 0.1, 0.0)),
@@ -95,7 +93,7 @@ fn pixel_shows_irradiance_by_way_of_the_albedo() {
 fn radiance_out_of_glass_takes_eta_squared() {
     let around = block(Vec3::splat(-1.0), Vec3::splat(1.0));
     let lamp = light(Vec3::ZERO, 0.5, 7.0);
-    let radiance_inside = lamp.kind.radiance().as_dvec3();
+    let radiance_inside = lamp.kind.strength().as_dvec3();
     let mut scene = scene(vec![(around, glass(1.5), Vec3::ZERO)], vec![lamp]);
     scene.camera.position = Vec3::new(0.0, 0.0, 500.0);
     scene.camera.vertical_fov = 0.01;
@@ -124,7 +122,8 @@ fn under_a_lens(lens: Mesh) -> (f64, f64, f64) {
     let scene = scene(parts, vec![light(Vec3::new(0.3, 2.2, 0.2), 0.4, 10.0)]);
     let world = World::new(&scene);
     let caster = Sphere { center: DVec3::new(0.0, 0.6, 0.0), radius: 0.4 };
-    let discs = [AimDisc::around(&world.lights()[0], &caster).expect("the lens is far from the light")];
+    let discs =
+        [AimDisc::around(&world.light_sphere(0).expect("a sphere"), &caster).expect("the lens is far from the light")];
     let photons = 1 << 19;
     let emission = Emission::Aimed(&discs);
     let job = PhotonJob { world: &world, maps: &[None, None], light: 0, emission, seed: 1, photons: 0..photons };
@@ -144,7 +143,7 @@ fn under_a_lens(lens: Mesh) -> (f64, f64, f64) {
 #[test]
 fn photons_and_paths_agree_under_a_lens() {
     let smooth = ball(0.4, 5);
-    let faceted = Mesh { normals: Vec::new(), ..ball(0.4, 3) };
+    let faceted = flat(ball(0.4, 3));
     for lens in [smooth, faceted] {
         let (by_photons, by_paths, deviation) = under_a_lens(lens);
         assert!(deviation < 0.005 * by_paths);

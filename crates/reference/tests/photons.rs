@@ -9,7 +9,7 @@ use diacaustic_reference::photons::{
 use diacaustic_scene::{MaterialKind, Scene};
 use glam::{Affine3A, DVec2, DVec3, Vec3};
 
-use shapes::{absorbing_glass, ball, block, diffuse, floor, glass, light, scene};
+use shapes::{absorbing_glass, ball, block, diffuse, floor, glass, light, scene, tinted_glass};
 
 const DOWN: DVec3 = DVec3::NEG_Y;
 
@@ -63,7 +63,7 @@ fn absorbing_slab() {
 
 #[test]
 fn tint_counts_at_each_crossing() {
-    let tinted = MaterialKind::Dielectric { ior: 1.0, tint: Vec3::new(0.5, 0.8, 1.0), absorption: Vec3::ZERO };
+    let tinted = tinted_glass(1.0, Vec3::new(0.5, 0.8, 1.0), Vec3::ZERO);
     let scene = slab(tinted);
     let world = World::new(&scene);
     let discs = [AimDisc { center: DVec3::Y, axis: DOWN, radius: 0.5 }];
@@ -117,7 +117,7 @@ fn ball_lens_focuses_as_tabulated() {
 
 #[test]
 fn ledger_closes_with_everything_in_it() {
-    let tinted = MaterialKind::Dielectric { ior: 1.5, tint: Vec3::new(0.9, 0.8, 1.0), absorption: Vec3::splat(0.7) };
+    let tinted = tinted_glass(1.5, Vec3::new(0.9, 0.8, 1.0), Vec3::splat(0.7));
     let mirror = MaterialKind::Mirror { reflectance: Vec3::new(0.9, 0.5, 0.1) };
     let parts = vec![
         (floor(2.0), diffuse(0.5), Vec3::ZERO),
@@ -145,7 +145,8 @@ fn ball_over_floor(kind: MaterialKind, extra: Vec<(diacaustic_scene::Mesh, Mater
 }
 
 fn ball_disc(world: &World, center: DVec3) -> AimDisc {
-    AimDisc::around(&world.lights()[0], &Sphere { center, radius: 0.3 }).expect("the ball is far from the light")
+    AimDisc::around(&world.light_sphere(0).expect("a sphere"), &Sphere { center, radius: 0.3 })
+        .expect("the ball is far from the light")
 }
 
 #[test]

@@ -1,48 +1,65 @@
 //! Light in plain sight.
 
-use std::f64::consts::{PI, TAU};
-
-use diacaustic_scene::LightKind;
 use glam::DVec3;
 
 use crate::generator::Generator;
 use crate::geometry::{Departure, Ray, World};
-use crate::warp;
+use crate::lights::{self, LightSample, sample_light, sample_surfaces};
+use crate::media::Media;
 
-/// Radiance of a light's surface, W/(m² sr): Φ/(4π²R²) for a Lambertian sphere.
-pub(super) fn radiance_of(world: &World, light: usize) -> DVec3 {
-    let LightKind::Sphere { radius, flux, .. } = world.scene().lights[light].kind;
-    flux.as_dvec3() / (4.0 * PI * PI * f64::from(radius) * f64::from(radius))
+/// A place that light reaches.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Vertex {
+    /// Metres.
+    pub(super) point: DVec3,
+    pub(super) departure: Departure,
+    /// Unit normal of the triangle.
+    pub(super) normal: DVec3,
+    /// What surrounds it on the side of the normal, and on the other.
+    pub(super) media: [Media; 2],
 }
 
-/// One sample of ∫ L f dω over the light in plain sight of a point, W/(m² sr) times the unit of `response` · sr, which
-/// is the BSDF times the cosine toward a unit vector wi. A light that the point lies in gives none: it shines outward.
+/// One sample of ∫ L f dω over all light in plain sight of a vertex, W/(m² sr) times the unit of `response` · sr, which
+/// is the BSDF times the cosine toward a unit vector wi.
 pub(super) fn gather(
     world: &World,
-    point: DVec3,
-    from: Departure,
+    vertex: &Vertex,
     response: impl Fn(DVec3) -> DVec3,
     generator: &mut Generator,
 ) -> DVec3 {
     let mut gathered = DVec3::ZERO;
-    for (light, sphere) in world.lights().iter().enumerate() {
-        let to_light = sphere.center - point;
-        let distance = to_light.length();
-        if distance <= sphere.radius {
-            continue;
-        }
-        let height = warp::cone_height(sphere.radius / distance);
-        let wi = warp::cone(to_light / distance, height, generator.unit(), generator.unit());
-        let response = response(wi);
-        if response == DVec3::ZERO {
-            continue;
-        }
-        let ray = Ray { origin: point, direction: wi };
-        // At the cone's very rim, rounding may pass the sphere by: the tangent's length serves there.
-        let reach = sphere.meet(&ray, 0.0).map_or_else(|| to_light.dot(wi), |(reach, _)| reach);
-        if !world.occluded(&ray, reach, from, light) {
-            gathered += TAU * height * radiance_of(world, light) * response;
-        }
+    for light in 0..world.scene().lights.len() {
+        let sample = sample_light(world, light, vertex.point, generator);
+        gathered += sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample));
     }
-    gathered
+    let sample = sample_surfaces(world, vertex.point, generator);
+    gathered + sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample))
+}
+
+/// The same for the lights alone that no ray drawn from a BSDF meets.
+pub(super) fn gather_delta(
+    world: &World,
+    vertex: &Vertex,
+    response: impl Fn(DVec3) -> DVec3,
+    generator: &mut Generator,
+) -> DVec3 {
+    let lights = world.scene().lights.iter().enumerate();
+    let deltas = lights.filter(|(_, light)| lights::is_delta(&light.kind));
+    deltas
+        .filter_map(|(light, _)| sample_light(world, light, vertex.point, generator))
+        .map(|sample| arriving(world, vertex, &response, &sample))
+        .sum()
+}
+
+fn arriving(world: &World, vertex: &Vertex, response: &impl Fn(DVec3) -> DVec3, sample: &LightSample) -> DVec3 {
+    let response = response(sample.wi);
+    if response == DVec3::ZERO || sample.value == DVec3::ZERO {
+        return DVec3::ZERO;
+    }
+    let ray = Ray { origin: vertex.point, direction: sample.wi };
+    if world.occluded(&ray, sample.distance, vertex.departure, sample.target) {
+        return DVec3::ZERO;
+    }
+    let side = usize::from(sample.wi.dot(vertex.normal) < 0.0);
+    response * sample.value * world.dielectrics().transmittance(&vertex.media[side], sample.distance)
 }

@@ -41,7 +41,7 @@ pub struct Facing {
 impl Triangle {
     /// Where a ray with this direction meets the triangle at `barycentric`.
     pub fn facing(&self, barycentric: DVec3, direction: DVec3) -> Facing {
-        let front = direction.dot(self.normal_geometric) <= 0.0;
+        let front = direction.dot(self.normal_geometric) < 0.0;
         let side = if front { 1.0 } else { -1.0 };
         let normal_geometric = side * self.normal_geometric;
         let interpolated = self.normals.map(|normals| side * weighted(normals, barycentric).normalize_or_zero());

@@ -1,4 +1,4 @@
-//! How photons leave a spherical light.
+//! How photons leave spherical, point, spot and distant lights.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,6 +6,8 @@ use diacaustic_scene::LightKind;
 use glam::DVec3;
 
 use crate::geometry::{Ray, Sphere};
+use crate::lights::{cap_height, intensity_of};
+use crate::media::Media;
 use crate::random::PhotonNumbers;
 use crate::warp;
 
@@ -51,10 +53,12 @@ impl AimDisc {
 /// How photons are spread over the rays that leave a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Emission<'a> {
-    /// Over the rays through these discs, of which there is at least one.
+    /// From a spherical light over the rays through these discs, of which there is at least one.
     Aimed(&'a [AimDisc]),
-    /// Over all of them.
+    /// From a spherical light over all of them.
     Unaimed,
+    /// From a point, a spot or a distant light toward these bounding spheres of casters, of which there is at least one.
+    Toward(&'a [Sphere]),
 }
 
 /// A photon as it leaves its light.
@@ -66,30 +70,77 @@ pub(super) struct Start {
 
 /// A light that sends out photons.
 pub(super) struct Emitter<'a> {
-    sphere: Sphere,
-    flux: DVec3,
-    emission: Emission<'a>,
+    source: Source<'a>,
+    media: Media,
+}
+
+enum Source<'a> {
+    Aimed(SphereLight, &'a [AimDisc]),
+    Unaimed(SphereLight),
+    Point(PointLight<'a>, &'a [Sphere]),
+    Distant(DistantLight, &'a [Sphere]),
 }
 
 impl<'a> Emitter<'a> {
     pub(super) fn new(job: &PhotonJob<'a>) -> Self {
-        let LightKind::Sphere { flux, .. } = job.world.scene().lights[job.light].kind;
-        Self { sphere: job.world.lights()[job.light], flux: flux.as_dvec3(), emission: job.emission }
+        let scene = job.world.scene();
+        let Some(light) = scene.lights.get(job.light) else {
+            panic!("photons of emissive surfaces (light {}) are not followed here", job.light)
+        };
+        let source = match (&light.kind, job.emission) {
+            (LightKind::Sphere { .. }, Emission::Aimed(discs)) => Source::Aimed(SphereLight::new(&light.kind), discs),
+            (LightKind::Sphere { .. }, Emission::Unaimed) => Source::Unaimed(SphereLight::new(&light.kind)),
+            (LightKind::Point { position, .. } | LightKind::Spot { position, .. }, Emission::Toward(casters)) => {
+                let point = PointLight { position: position.as_dvec3(), kind: &light.kind };
+                Source::Point(point, casters)
+            }
+            (LightKind::Distant { .. }, Emission::Toward(casters)) => {
+                Source::Distant(DistantLight::new(&light.kind, job.world.bounds()), casters)
+            }
+            (kind, emission) => panic!("photons of {kind:?} are not followed here with {emission:?}"),
+        };
+        Self { source, media: job.world.light_media(job.light) }
+    }
+
+    /// What encloses the light.
+    pub(super) fn media(&self) -> Media {
+        self.media
     }
 
     pub(super) fn emit(&self, numbers: &PhotonNumbers) -> Start {
-        match self.emission {
-            Emission::Aimed(discs) => self.emit_aimed(discs, numbers),
-            Emission::Unaimed => self.emit_unaimed(numbers),
+        match &self.source {
+            Source::Aimed(sphere, discs) => sphere.emit_aimed(discs, numbers),
+            Source::Unaimed(sphere) => sphere.emit_unaimed(numbers),
+            Source::Point(point, casters) => point.emit(casters, numbers),
+            Source::Distant(distant, casters) => distant.emit(casters, numbers),
         }
+    }
+}
+
+/// One of `count` by a number in [0, 1), which is stretched to [0, 1) again.
+fn choose(u: f64, count: usize) -> (usize, f64) {
+    let scaled = u * count as f64;
+    let chosen = (scaled as usize).min(count - 1);
+    (chosen, scaled - chosen as f64)
+}
+
+struct SphereLight {
+    sphere: Sphere,
+    flux: DVec3,
+}
+
+impl SphereLight {
+    fn new(kind: &LightKind) -> Self {
+        let LightKind::Sphere { center, radius, flux } = *kind else { unreachable!("the caller matched a sphere") };
+        let sphere = Sphere { center: center.as_dvec3(), radius: f64::from(radius) };
+        Self { sphere, flux: flux.as_dvec3() }
     }
 
     fn emit_aimed(&self, discs: &[AimDisc], numbers: &PhotonNumbers) -> Start {
         let count = discs.len();
-        let scaled = numbers.emission(0) * count as f64;
-        let chosen = (scaled as usize).min(count - 1);
+        let (chosen, u) = choose(numbers.emission(0), count);
         let AimDisc { center, axis, radius } = discs[chosen];
-        let on_disc = warp::disc(scaled - chosen as f64, numbers.emission(1));
+        let on_disc = warp::disc(u, numbers.emission(1));
         let [t1, t2] = warp::frame(axis);
         let target = center + radius * (on_disc.x * t1 + on_disc.y * t2);
 
@@ -135,5 +186,79 @@ impl<'a> Emitter<'a> {
         let direction = warp::cosine_hemisphere(n, numbers.emission(0), numbers.emission(1));
         let origin = self.sphere.center + self.sphere.radius * n;
         Start { ray: Ray { origin, direction }, flux: self.flux }
+    }
+}
+
+/// A point or a spot.
+struct PointLight<'a> {
+    position: DVec3,
+    kind: &'a LightKind,
+}
+
+impl PointLight<'_> {
+    fn emit(&self, casters: &[Sphere], numbers: &PhotonNumbers) -> Start {
+        let (chosen, u) = choose(numbers.emission(0), casters.len());
+        let cones: Vec<_> = casters.iter().map(|caster| self.cone_toward(caster)).collect();
+        let (axis, height) = cones[chosen];
+        let direction = warp::cone(axis, height, u, numbers.emission(1)).normalize();
+        let hit = cones.iter().enumerate().filter(|(k, (axis, h))| *k == chosen || direction.dot(*axis) >= 1.0 - h);
+        let density: f64 = hit.map(|(_, (_, h))| 1.0 / (TAU * h * casters.len() as f64)).sum();
+        let ray = Ray { origin: self.position, direction };
+        Start { ray, flux: intensity_of(self.kind, direction) / density }
+    }
+
+    /// Axis and height of the cone in which a caster lies; all directions from within it.
+    fn cone_toward(&self, caster: &Sphere) -> (DVec3, f64) {
+        let to_caster = caster.center - self.position;
+        let distance = to_caster.length();
+        let height = if distance > caster.radius { warp::cone_height(caster.radius / distance) } else { 2.0 };
+        (to_caster.try_normalize().unwrap_or(DVec3::Z), height)
+    }
+}
+
+/// Parallel light, or a disc in the sky.
+struct DistantLight {
+    /// Unit direction of flight of the disc's middle.
+    direction: DVec3,
+    /// 1 − cos α of the disc.
+    height: f64,
+    /// On a surface that faces the middle, W/m².
+    irradiance: DVec3,
+    /// Photons start outside of it.
+    bounds: Sphere,
+}
+
+impl DistantLight {
+    fn new(kind: &LightKind, bounds: Sphere) -> Self {
+        let LightKind::Distant { direction, angular_radius, irradiance } = *kind else {
+            unreachable!("the caller matched a distant light")
+        };
+        Self {
+            direction: direction.as_dvec3().normalize(),
+            height: cap_height(angular_radius),
+            irradiance: irradiance.as_dvec3(),
+            bounds,
+        }
+    }
+
+    fn emit(&self, casters: &[Sphere], numbers: &PhotonNumbers) -> Start {
+        let direction = if self.height > 0.0 {
+            warp::cone(self.direction, self.height, numbers.emission(2), numbers.emission(3)).normalize()
+        } else {
+            self.direction
+        };
+        let (chosen, u) = choose(numbers.emission(0), casters.len());
+        let Sphere { center, radius } = casters[chosen];
+        let ([t1, t2], p) = (warp::frame(direction), warp::disc(u, numbers.emission(1)));
+        let target = center + radius * (p.x * t1 + p.y * t2);
+        let crossed = casters.iter().enumerate().filter(|(k, caster)| {
+            *k == chosen || (caster.center - target).reject_from_normalized(direction).length() <= caster.radius
+        });
+        let density: f64 =
+            crossed.map(|(_, caster)| 1.0 / (PI * caster.radius * caster.radius * casters.len() as f64)).sum();
+        let back = 2.0 * self.bounds.radius + target.distance(self.bounds.center);
+        let ray = Ray { origin: target - back * direction, direction };
+        // The disc's irradiance on a surface across each of its own directions: L Ω, with E = π L sin² α.
+        Start { ray, flux: self.irradiance * (2.0 / (2.0 - self.height)) / density }
     }
 }

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Departure, Hit, Meeting, Ray};
+use crate::bsdf::{Crossing, Outcome, Surface};
+use crate::geometry::{Departure, Facing, Hit, Meeting, Ray};
+use crate::media::Media;
 use crate::random::PhotonNumbers;
-use crate::specular::{absorption, scatter};
 
 use super::emission::{Emitter, Start};
 use super::{Landing, Ledger, PhotonJob};
@@ -14,8 +15,12 @@ use super::{Landing, Ledger, PhotonJob};
 pub enum Event {
     /// It was reflected.
     Reflected,
-    /// It crossed the boundary.
+    /// It crossed the boundary between two media.
     Refracted,
+    /// It went straight on: through a thin wall, or a boundary that does not exist.
+    Passed,
+    /// It was reflected or refracted to the wrong side of a rough surface, and lost.
+    Shadowed,
     /// It ended on a receiver.
     Received,
 }
@@ -29,7 +34,7 @@ pub struct Vertex {
     pub triangle: usize,
     /// What happened there.
     pub event: Event,
-    /// Flux after it, W; on a receiver, the flux that arrives.
+    /// Flux after it, W; on a receiver, the flux that its base takes.
     pub flux: DVec3,
 }
 
@@ -42,6 +47,8 @@ pub enum End {
     Direct(Landing),
     /// On the light of this index.
     Absorbed(usize),
+    /// On a rough surface, whose microfacet sent it to the wrong side.
+    Shadowed,
     /// Out of the scene.
     Escaped,
     /// After the greatest number of surfaces that a path may meet.
@@ -72,8 +79,8 @@ struct Flight<'a> {
     ray: Ray,
     departure: Departure,
     flux: DVec3,
-    /// σ of the medium that it is in, 1/m; zero in the open.
-    absorption: DVec3,
+    /// What it is in.
+    media: Media,
     vertices: Vec<Vertex>,
     ledger: Ledger,
 }
@@ -87,7 +94,7 @@ pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath
         ray,
         departure: Departure::Light(job.light),
         flux,
-        absorption: DVec3::ZERO,
+        media: emitter.media(),
         vertices: Vec::new(),
         ledger: Ledger { emitted: flux, ..Ledger::default() },
     };
@@ -105,7 +112,7 @@ impl Flight<'_> {
                     return End::Escaped;
                 }
                 Some(Meeting::Light { light, .. }) => {
-                    self.ledger.absorbed += self.flux;
+                    self.attenuate(DVec3::ZERO);
                     return End::Absorbed(light);
                 }
                 Some(Meeting::Surface(hit)) => {
@@ -121,31 +128,62 @@ impl Flight<'_> {
 
     /// Goes on from a caster; ends on a receiver.
     fn meet_surface(&mut self, hit: &Hit) -> Option<End> {
-        self.attenuate((-self.absorption * hit.distance).exp());
         let world = self.job.world;
-        let kind = world.material(hit.triangle);
+        self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance));
         let facing = world.triangles()[hit.triangle].facing(hit.barycentric, self.ray.direction);
-        if !kind.is_caster() {
-            return Some(self.land(hit, facing.point, facing.front));
+        match Crossing::of(world, hit, &facing, self.media) {
+            Crossing::Nothing(media) => {
+                self.media = media;
+                self.record(hit, facing.point, Event::Passed);
+                self.leave(hit, &facing, self.ray.direction);
+                None
+            }
+            Crossing::Surface(surface, _) if !surface.is_caster() => {
+                let weight = surface.passed_to_base(-self.ray.direction.dot(facing.normal_shading));
+                Some(self.land(hit, &facing, weight))
+            }
+            Crossing::Surface(surface, beyond) => self.meet_caster(hit, &facing, &surface, beyond),
         }
-        let scattered =
-            scatter(kind, &facing, self.ray.direction, || self.numbers.next_choice()).expect("every caster scatters");
-        self.attenuate(scattered.weight);
-        let corrected = self.flux * scattered.adjoint;
-        self.ledger.shading_normals += self.flux - corrected;
-        self.flux = corrected;
-        if scattered.refracted {
-            self.absorption = if facing.front { absorption(kind) } else { DVec3::ZERO };
-        }
-        let event = if scattered.refracted { Event::Refracted } else { Event::Reflected };
-        self.record(hit, facing.point, event);
-        self.ray = Ray { origin: facing.point, direction: scattered.direction };
-        self.departure = Departure::Triangle(hit.triangle);
-        None
     }
 
-    fn land(&mut self, hit: &Hit, point: DVec3, front: bool) -> End {
+    fn meet_caster(&mut self, hit: &Hit, facing: &Facing, surface: &Surface, beyond: Media) -> Option<End> {
+        let numbers = &mut self.numbers;
+        match surface.scatter(facing, self.ray.direction, || numbers.next_caster()) {
+            Outcome::Base(weight) => Some(self.land(hit, facing, weight)),
+            Outcome::Lost => {
+                self.attenuate(DVec3::ZERO);
+                self.record(hit, facing.point, Event::Shadowed);
+                Some(End::Shadowed)
+            }
+            Outcome::Passed(scattered) => {
+                self.attenuate(scattered.weight);
+                let corrected = self.flux * scattered.adjoint;
+                self.ledger.shading_normals += self.flux - corrected;
+                self.flux = corrected;
+                let event = match scattered.transmitted {
+                    false => Event::Reflected,
+                    true if beyond == self.media => Event::Passed,
+                    true => Event::Refracted,
+                };
+                if scattered.transmitted {
+                    self.media = beyond;
+                }
+                self.record(hit, facing.point, event);
+                self.leave(hit, facing, scattered.direction);
+                None
+            }
+        }
+    }
+
+    fn leave(&mut self, hit: &Hit, facing: &Facing, direction: DVec3) {
+        self.ray = Ray { origin: facing.point, direction };
+        self.departure = Departure::Triangle(hit.triangle);
+    }
+
+    fn land(&mut self, hit: &Hit, facing: &Facing, weight: DVec3) -> End {
         let has_met_caster = !self.vertices.is_empty();
+        self.attenuate(weight);
+        let Facing { point, front, .. } = *facing;
         let landing = Landing { triangle: hit.triangle, barycentric: hit.barycentric, front, flux: self.flux };
         self.record(hit, point, Event::Received);
         if has_met_caster {
@@ -157,6 +195,7 @@ impl Flight<'_> {
         }
     }
 
+    /// What is not kept counts as absorbed; a weight over 1, that of an unlikely way, counts against it.
     fn attenuate(&mut self, share: DVec3) {
         let kept = self.flux * share;
         self.ledger.absorbed += self.flux - kept;

@@ -1,5 +1,7 @@
 //! Meshes and scenes for the tests.
 
+#![allow(dead_code, reason = "no file of tests uses all of them")]
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -67,7 +69,22 @@ pub fn glass(ior: f32) -> MaterialKind {
 
 /// Glass of one σ in every channel, 1/m.
 pub fn absorbing_glass(ior: f32, absorption: f32) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::splat(absorption) }
+    tinted_glass(ior, Vec3::ONE, Vec3::splat(absorption))
+}
+
+/// Smooth glass of priority 0.
+pub fn tinted_glass(ior: f32, tint: Vec3, absorption: Vec3) -> MaterialKind {
+    MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority: 0 }
+}
+
+/// Clear rough glass.
+pub fn frosted(ior: f32, roughness: f32) -> MaterialKind {
+    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness, priority: 0 }
+}
+
+/// The same mesh in flat facets: interpolated normals do not keep phase space, and nested ones can catch light for good.
+pub fn flat(mesh: Mesh) -> Mesh {
+    Mesh { normals: Vec::new(), ..mesh }
 }
 
 /// A grey Lambertian surface.
@@ -77,7 +94,12 @@ pub fn diffuse(albedo: f32) -> MaterialKind {
 
 /// A spherical light of one flux in every channel.
 pub fn light(center: Vec3, radius: f32, flux: f32) -> Light {
-    Light { name: "light".into(), kind: LightKind::Sphere { center, radius, flux: Vec3::splat(flux) } }
+    named(LightKind::Sphere { center, radius, flux: Vec3::splat(flux) })
+}
+
+/// A light of a kind.
+pub fn named(kind: LightKind) -> Light {
+    Light { name: "light".into(), kind, photon_share: 1 }
 }
 
 /// A scene of meshes, each with its material and its place, in front of a black background.
@@ -101,7 +123,7 @@ pub fn scene(parts: Vec<(Mesh, MaterialKind, Vec3)>, lights: Vec<Light>) -> Scen
         output: OutputSettings::default(),
     };
     for (index, (mesh, kind, place)) in parts.into_iter().enumerate() {
-        scene.materials.push(Material { name: format!("material {index}"), kind });
+        scene.materials.push(Material { name: format!("material {index}"), kind, emission: Vec3::ZERO });
         scene.objects.push(Object {
             name: format!("object {index}"),
             mesh: Arc::new(mesh),

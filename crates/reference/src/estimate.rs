@@ -47,7 +47,7 @@ impl<const N: usize> Sums<N> {
 ///
 /// # Panics
 /// If there are fewer than 2 samples.
-pub(super) fn mean<const N: usize>(
+pub(crate) fn mean<const N: usize>(
     samples: u32,
     words: &[u64],
     sample: impl Fn(&mut Generator) -> [DVec3; N] + Sync,

@@ -1,0 +1,147 @@
+//! What a surface does to light, as `docs/materials.md` defines it. Directions `wo` and `wi` point away from the surface;
+//! wo is on the side of the normals of the [`Facing`].
+
+mod base;
+mod gloss;
+pub mod microfacet;
+mod scatter;
+
+use diacaustic_scene::{MaterialKind, SMOOTH};
+use glam::DVec3;
+
+use crate::fresnel;
+use crate::geometry::{Facing, Hit, World};
+use crate::media::Media;
+
+pub use self::base::Base;
+pub(crate) use self::base::resolved_albedo;
+pub use self::scatter::{Draw, Outcome, Scattered};
+
+use self::microfacet::Microfacets;
+
+/// What a ray meets at a triangle.
+#[derive(Clone, Copy, Debug)]
+pub enum Crossing {
+    /// A boundary that does not exist: the ray goes straight on with this list.
+    Nothing(Media),
+    /// A surface, with the list of a ray that is transmitted.
+    Surface(Surface, Media),
+}
+
+impl Crossing {
+    /// What a ray within `media` meets.
+    pub fn of(world: &World, hit: &Hit, facing: &Facing, media: Media) -> Self {
+        let material = world.material_index(hit.triangle);
+        let beyond = world.dielectrics().beyond(media, material, facing.front);
+        let kind = world.material(hit.triangle);
+        if matches!(kind, MaterialKind::Dielectric { .. }) && beyond.filling() == media.filling() {
+            return Self::Nothing(beyond);
+        }
+        let ior = |media| world.dielectrics().ior(media);
+        let base = Base::of(kind, world.scene().ambient.as_dvec3(), world.base_albedo(material));
+        Self::Surface(Surface::with_base(kind, base, ior(&media), ior(&beyond)), beyond)
+    }
+}
+
+/// A surface's lobes, between the media on its two sides.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    specular: Specular,
+    microfacets: Option<Microfacets>,
+    base: Option<Base>,
+    is_caster: bool,
+}
+
+/// The specular lobe. `eta` is the index of refraction on the side of wo over that of the other; n + ik are relative to
+/// the medium.
+#[derive(Clone, Copy, Debug)]
+enum Specular {
+    None,
+    Mirror { reflectance: DVec3 },
+    Conductor { n: DVec3, k: DVec3 },
+    Dielectric { eta: f64, tint: DVec3 },
+    ThinWalled { eta: f64, tint: DVec3 },
+    Coat { eta: f64 },
+    Schlick { f0: DVec3 },
+}
+
+impl Specular {
+    /// Share of the light that is reflected at cos θ to the microfacet's normal.
+    fn fresnel(&self, cos: f64) -> DVec3 {
+        match *self {
+            Self::None => DVec3::ZERO,
+            Self::Mirror { reflectance } => reflectance,
+            Self::Conductor { n, k } => {
+                DVec3::from_array(std::array::from_fn(|channel| fresnel::conductor(cos, n[channel], k[channel])))
+            }
+            Self::Dielectric { eta, .. } | Self::Coat { eta } => DVec3::splat(fresnel::reflectance(cos, eta)),
+            Self::ThinWalled { eta, .. } => {
+                let f = fresnel::reflectance(cos, eta);
+                DVec3::splat(2.0 * f / (1.0 + f))
+            }
+            Self::Schlick { f0 } => fresnel::schlick(cos, f0),
+        }
+    }
+}
+
+impl Surface {
+    /// The surface of a material between two indices of refraction: on the side of wo and beyond. Materials other than
+    /// dielectrics have the same on both sides. `ambient` is the scene's radiance of that name, W/(m² sr).
+    pub fn new(kind: &MaterialKind, ambient: DVec3, ior: f64, ior_beyond: f64) -> Self {
+        Self::with_base(kind, Base::of(kind, ambient, resolved_albedo(kind)), ior, ior_beyond)
+    }
+
+    fn with_base(kind: &MaterialKind, base: Option<Base>, ior: f64, ior_beyond: f64) -> Self {
+        let (specular, roughness) = match *kind {
+            MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => (Specular::None, 0.0),
+            MaterialKind::Mirror { reflectance } => (Specular::Mirror { reflectance: reflectance.as_dvec3() }, 0.0),
+            MaterialKind::Conductor { eta, k, roughness } => {
+                (Specular::Conductor { n: eta.as_dvec3() / ior, k: k.as_dvec3() / ior }, roughness)
+            }
+            MaterialKind::Dielectric { tint, roughness, .. } => {
+                (Specular::Dielectric { eta: ior / ior_beyond, tint: tint.as_dvec3() }, roughness)
+            }
+            MaterialKind::ThinWalled { ior: own, tint } => {
+                (Specular::ThinWalled { eta: ior / f64::from(own), tint: tint.as_dvec3() }, 0.0)
+            }
+            MaterialKind::Coated { ior: own, roughness, .. } => {
+                (Specular::Coat { eta: ior / f64::from(own) }, roughness)
+            }
+            MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+                let f0 = base::metallic_f0(base_color.as_dvec3(), f64::from(metallic));
+                (Specular::Schlick { f0 }, roughness)
+            }
+        };
+        Self {
+            specular,
+            microfacets: (roughness >= SMOOTH).then(|| Microfacets::of_roughness(f64::from(roughness))),
+            base,
+            is_caster: kind.is_caster(),
+        }
+    }
+
+    /// Whether its specular lobe sends light on as a caster does.
+    pub fn is_caster(&self) -> bool {
+        self.is_caster
+    }
+
+    /// What is left under the specular lobe.
+    pub fn base(&self) -> Option<&Base> {
+        self.base.as_ref()
+    }
+
+    /// Whether the specular lobe is spread out, so that light from a single direction shows.
+    pub fn is_rough(&self) -> bool {
+        self.microfacets.is_some()
+    }
+
+    /// Whether it has a spread specular lobe that belongs to the receiver.
+    pub fn has_receiver_gloss(&self) -> bool {
+        !self.is_caster && self.is_rough()
+    }
+
+    /// T(w), the share of light along w that passes between the base and the open, at w·n_s.
+    pub fn passed_to_base(&self, cos: f64) -> DVec3 {
+        1.0 - self.specular.fresnel(cos)
+    }
+}

@@ -1,0 +1,45 @@
+//! The specular lobe of rough surfaces toward a given direction.
+
+use glam::DVec3;
+
+use crate::geometry::Facing;
+
+use super::microfacet::Microfacets;
+use super::{Specular, Surface};
+
+impl Surface {
+    /// The BSDF of the specular lobe for radiance times |cos θi|, 1/sr; zero on smooth surfaces, whose lobe has no
+    /// width, and for light that passes a thin wall.
+    pub fn gloss(&self, facing: &Facing, wo: DVec3, wi: DVec3) -> DVec3 {
+        let Some(microfacets) = self.microfacets else { return DVec3::ZERO };
+        let (side_s, side_g) = (wi.dot(facing.normal_shading), wi.dot(facing.normal_geometric));
+        match self.specular {
+            _ if side_s > 0.0 && side_g > 0.0 => self.glossy_reflection(&microfacets, facing.normal_shading, wo, wi),
+            Specular::Dielectric { eta, tint } if side_s < 0.0 && side_g < 0.0 => {
+                tint * self.glossy_transmission(&microfacets, facing.normal_shading, wo, wi, eta)
+            }
+            _ => DVec3::ZERO,
+        }
+    }
+
+    fn glossy_reflection(&self, microfacets: &Microfacets, n: DVec3, wo: DVec3, wi: DVec3) -> DVec3 {
+        let m = (wo + wi).normalize();
+        let (cos_o, cos_i) = (wo.dot(n), wi.dot(n));
+        let facets = microfacets.distribution(m.dot(n)) * microfacets.masking_shadowing(cos_o, cos_i);
+        facets / (4.0 * cos_o) * self.specular.fresnel(wo.dot(m))
+    }
+
+    /// Walter et al. 2007, equation 21, with η² for radiance.
+    fn glossy_transmission(&self, microfacets: &Microfacets, n: DVec3, wo: DVec3, wi: DVec3, eta: f64) -> DVec3 {
+        let toward = eta * wo + wi;
+        let m = toward.dot(n).signum() * toward.normalize_or_zero();
+        let (o, i) = (wo.dot(m), wi.dot(m));
+        if o <= 0.0 || i >= 0.0 {
+            return DVec3::ZERO;
+        }
+        let (cos_o, cos_i) = (wo.dot(n), -wi.dot(n));
+        let facets = microfacets.distribution(m.dot(n)) * microfacets.masking_shadowing(cos_o, cos_i);
+        let jacobian = o * -i / (cos_o * (eta * o + i).powi(2));
+        eta * eta * facets * jacobian * (1.0 - self.specular.fresnel(o))
+    }
+}

@@ -1,0 +1,65 @@
+//! The way from a light to the first receiver.
+
+use glam::DVec3;
+
+use crate::bsdf::{Crossing, Draw, Outcome};
+use crate::generator::Generator;
+use crate::geometry::{Departure, Meeting, Ray, World};
+use crate::roulette;
+
+use super::emission::Start;
+
+/// Where light has met a receiver.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing {
+    pub(super) point: DVec3,
+    /// Direction of flight.
+    pub(super) direction: DVec3,
+    /// W.
+    pub(super) flux: DVec3,
+    pub(super) has_met_caster: bool,
+}
+
+/// Where light lands, if it does.
+pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Option<Landing> {
+    let Start { mut ray, mut departure, mut media, flux } = start;
+    // Share of the flux at the start.
+    let mut kept = DVec3::ONE;
+    let mut casters = 0;
+    loop {
+        let Some(Meeting::Surface(hit)) = world.meet(&ray, departure) else { return None };
+        kept *= world.dielectrics().transmittance(&media, hit.distance);
+        let facing = world.triangles()[hit.triangle].facing(hit.barycentric, ray.direction);
+        let land = |kept: DVec3, weight: DVec3| {
+            let (point, direction) = (facing.point, ray.direction);
+            Some(Landing { point, direction, flux: flux * kept * weight, has_met_caster: casters > 0 })
+        };
+        let mut direction = ray.direction;
+        match Crossing::of(world, &hit, &facing, media) {
+            Crossing::Nothing(beyond) => media = beyond,
+            Crossing::Surface(surface, _) if !surface.is_caster() => {
+                return land(kept, surface.passed_to_base(-ray.direction.dot(facing.normal_shading)));
+            }
+            Crossing::Surface(surface, beyond) => {
+                let draw = || Draw { choice: generator.unit(), microfacet: [generator.unit(), generator.unit()] };
+                match surface.scatter(&facing, ray.direction, draw) {
+                    Outcome::Base(weight) => return land(kept, weight),
+                    Outcome::Lost => return None,
+                    Outcome::Passed(scattered) => {
+                        kept *= scattered.weight * scattered.adjoint;
+                        direction = scattered.direction;
+                        if scattered.transmitted {
+                            media = beyond;
+                        }
+                    }
+                }
+            }
+        }
+        casters += 1;
+        if !roulette::survives(&mut kept, casters, generator) {
+            return None;
+        }
+        ray = Ray { origin: facing.point, direction };
+        departure = Departure::Triangle(hit.triangle);
+    }
+}
