@@ -84,6 +84,13 @@ fn target_height(aim: AimTarget, point: vec3<f32>) -> f32 {
     return select(cone_height(min(aim.radius / distance, 1.0)), 2.0, distance <= aim.radius);
 }
 
+/// Unit direction from a point to a target's centre; any from the centre itself.
+fn toward_target(aim: AimTarget, point: vec3<f32>) -> vec3<f32> {
+    let between = aim.center - point;
+    let distance = length(between);
+    return select(vec3<f32>(0.0, 0.0, 1.0), between / max(distance, 1e-30), distance > 0.0);
+}
+
 /// A direction from a point toward the casters' bounding spheres.
 struct TowardTargets {
     /// Unit direction.
@@ -96,13 +103,13 @@ fn sample_targets(point: vec3<f32>, u: vec2<f32>) -> TowardTargets {
     let choice = choose_target(u.x);
     let aim = photon_params.targets[choice.index];
     let height = target_height(aim, point);
-    let d = cone(normalize(aim.center - point), height, vec2<f32>(choice.rest, u.y)).direction;
+    let d = cone(toward_target(aim, point), height, vec2<f32>(choice.rest, u.y)).direction;
     var sum = 1.0 / height;
     for (var k = 0u; k < photon_params.target_count; k++) {
         let other = photon_params.targets[k];
         let other_height = target_height(other, point);
         // |d − axis|²/2 is 1 − cos of the angle between them, without cancellation.
-        let chord = d - normalize(other.center - point);
+        let chord = d - toward_target(other, point);
         if k != choice.index && 0.5 * dot(chord, chord) <= other_height {
             sum += 1.0 / other_height;
         }

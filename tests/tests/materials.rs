@@ -82,7 +82,8 @@ fn coated_base_against_its_closed_form() {
 #[test]
 fn metallic_roughness_between_its_ends() {
     // Schlick at normal incidence: f₀ = 0.04(1 − m) + m b; the base has (1 − m) b of the rest.
-    let found = plate("{ type = \"metallic_roughness\", base_color = [0.8, 0.4, 0.2], metallic = 0.5, roughness = 0 }", 0.0);
+    let found =
+        plate("{ type = \"metallic_roughness\", base_color = [0.8, 0.4, 0.2], metallic = 0.5, roughness = 0 }", 0.0);
     let b = DVec3::new(0.8, 0.4, 0.2);
     let f0 = 0.02 + 0.5 * b;
     let expected = f0 + (1.0 - f0) * 0.5 * b;
