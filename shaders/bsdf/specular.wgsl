@@ -103,13 +103,16 @@ fn scatter_specular(
     return event;
 }
 
+/// The most by which interpolated normals raise a photon's flux at one surface.
+const ADJOINT_LIMIT: f32 = 4.0;
+
 /// The factor by which interpolated normals change a photon's flux (Veach 1997, §5.3.2).
 fn adjoint_factor(d: vec3<f32>, n_g: vec3<f32>, event: SpecularEvent) -> f32 {
     let wi_s = abs(dot(d, event.normal));
     let wo_g = abs(dot(event.direction, n_g));
     let wi_g = abs(dot(d, n_g));
     let wo_s = abs(dot(event.direction, event.normal));
-    return (wi_s * wo_g) / (wi_g * wo_s);
+    return min((wi_s * wo_g) / (wi_g * wo_s), ADJOINT_LIMIT);
 }
 
 /// A lobe's value for two directions.

@@ -139,8 +139,7 @@ fn emit_toward(light: Light, u: vec4<f32>) -> Emission {
 
 /// A ray from infinitely far across the casters' bounding spheres.
 fn emit_across(light: Light, u: vec4<f32>) -> Emission {
-    let in_disc = cone(light.position, light.extent, u.zw).direction;
-    var d = -in_disc;
+    var d = cone(-light.position, light.extent, u.zw).direction;
     // Irradiance on a surface that faces the light.
     var irradiance = light.strength * select(1.0, 2.0 * PI * light.extent, light.extent > 0.0);
     if photon_light_kind == LIGHT_ENVIRONMENT {

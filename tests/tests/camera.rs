@@ -77,7 +77,7 @@ fn bounced_light_in_a_corner() {
              { type = \"rectangle\", center = [0.3, 2, 0], edge_u = [0.8, 0, 0], edge_v = [0, 0, 0.8], flux = 40 },
          ]
          objects = [
-             { box = { min = [-0.25, 0, -0.25], max = [0.25, 0.4, 0.25] }, material = \"glass\", rotate = [0, 30, 0] },
+             { box = { min = [-0.25, 0.05, -0.25], max = [0.25, 0.4, 0.25] }, material = \"glass\", rotate = [0, 30, 0] },
              { rectangle = { center = [0, 1, -0.8], edge_u = [4, 0, 0], edge_v = [0, 2, 0] }, material = \"red\" },",
     ));
 }
@@ -117,7 +117,7 @@ fn nested_glass_under_a_sky() {
              { type = \"point\", position = [0, 5, 0], flux = 1 },
          ]
          objects = [
-             { box = { min = [-0.3, 0, -0.3], max = [0.3, 0.2, 0.3] }, material = \"glass\" },
+             { box = { min = [-0.3, 0.03, -0.3], max = [0.3, 0.2, 0.3] }, material = \"glass\" },
              { box = { min = [-0.25, 0.15, -0.25], max = [0.25, 0.5, 0.25] }, material = \"water\" },
              { rectangle = { center = [0.6, 0.5, 0.2], edge_u = [0, 0.8, 0], edge_v = [0.2, 0, 0.8] }, material = \"pane\" },
              { box = { min = [-1, 0.1, -0.5], max = [-0.7, 0.4, 0.3] }, material = \"glow\" },",

@@ -9,6 +9,9 @@ use crate::warp;
 use super::microfacet::Microfacets;
 use super::{Specular, Surface};
 
+/// The most by which interpolated normals raise flux at one surface.
+const ADJOINT_LIMIT: f64 = 4.0;
+
 /// Random numbers in [0, 1) for one caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Draw {
@@ -176,7 +179,8 @@ fn unshadowed(microfacets: &Microfacets, n: DVec3, direction: DVec3, outgoing: D
 }
 
 fn adjoint(direction: DVec3, outgoing: DVec3, n_s: DVec3, n_g: DVec3) -> f64 {
-    (direction.dot(n_s) * outgoing.dot(n_g) / (direction.dot(n_g) * outgoing.dot(n_s))).abs()
+    let factor = direction.dot(n_s) * outgoing.dot(n_g) / (direction.dot(n_g) * outgoing.dot(n_s));
+    factor.abs().min(ADJOINT_LIMIT)
 }
 
 #[cfg(test)]
