@@ -40,8 +40,8 @@ EXPECTED = {
         "bottom": drink.FLOOR - drink.OVERLAP,
     },
     "ice-cube": {"genus": 0, "triangles": (1_000, 5_000), "size": (0.1, 0.1, 0.1)},
-    "ring": {"genus": 1, "triangles": (5_000, 30_000), "size": (0.6, 0.15, 0.6)},
-    "tube": {"genus": 1, "triangles": (1_000, 5_000), "size": (0.424, 0.024, 0.424)},
+    "ring": {"genus": 1, "triangles": (5_000, 30_000), "size": (0.6, 0.12, 0.6)},
+    "tube": {"genus": 1, "triangles": (1_000, 5_000), "size": (0.44, 0.04, 0.44)},
 }
 """Handles, range of triangle counts, size along x, y, z in metres (to 1 cm), and height of the lowest point."""
 

@@ -4,7 +4,7 @@ from lathe import rounded, turned
 
 INSIDE_RADIUS = 0.286
 OUTSIDE_RADIUS = 0.30
-HEIGHT = 0.15
+HEIGHT = 0.12
 ROUNDING = 0.005
 """Radius of its edges, in metres."""
 

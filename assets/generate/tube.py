@@ -7,7 +7,7 @@ from mesh import Mesh, grid_triangles, index_rows
 RADIUS = 0.2
 """Radius of the tube's middle line, in metres."""
 
-THICKNESS = 0.012
+THICKNESS = 0.02
 """Radius of its cross-section, in metres."""
 
 AROUND = 64
