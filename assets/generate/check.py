@@ -1,8 +1,8 @@
-"""Check the written meshes: closed, one piece, facing outward, with sound normals.
+"""Check the written meshes: closed, one piece, facing outward, with sound normals; and panoramas.
 
     python assets/generate/check.py
 
-prints one line for each mesh and leaves with status 1 if any fails.
+prints one line for each file and leaves with status 1 if any fails.
 """
 
 import sys
@@ -10,10 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
+import drink
+import hdr
 import obj
 from mesh import facet_crosses, index_rows, signed_volume
 
-MESHES = Path(__file__).resolve().parent.parent / "meshes"
+ASSETS = Path(__file__).resolve().parent.parent
+MESHES = ASSETS / "meshes"
+PANORAMAS = ASSETS / "environments"
 
 LEAST_HEIGHT = 2e-6
 """The least height of a triangle over its longest edge, in metres."""
@@ -28,8 +32,23 @@ EXPECTED = {
     "crystal": {"genus": 0, "triangles": (100, 300), "size": (0.6, 0.367, 0.6)},
     "ball": {"genus": 0, "triangles": (20_480, 20_480), "size": (0.6, 0.6, 0.6)},
     "wine-glass": {"genus": 0, "triangles": (25_000, 40_000), "size": (0.34, 0.8, 0.34)},
+    "tumbler": {"genus": 0, "triangles": (15_000, 30_000), "size": (0.316, 0.42, 0.316)},
+    "drink": {
+        "genus": 0,
+        "triangles": (5_000, 30_000),
+        "size": (0.285, 0.269, 0.285),
+        "bottom": drink.FLOOR - drink.OVERLAP,
+    },
+    "ice-cube": {"genus": 0, "triangles": (1_000, 5_000), "size": (0.1, 0.1, 0.1)},
+    "ring": {"genus": 1, "triangles": (5_000, 30_000), "size": (0.6, 0.12, 0.6)},
+    "tube": {"genus": 1, "triangles": (1_000, 5_000), "size": (0.44, 0.04, 0.44)},
 }
-"""Handles, range of triangle counts, and size along x, y, z in metres (to 1 cm)."""
+"""Handles, range of triangle counts, size along x, y, z in metres (to 1 cm), and height of the lowest point."""
+
+PANORAMA_TEXELS = (64, 128)
+
+BRIGHTEST = 100.0
+"""The most radiance of a panorama's texel, W/(m² sr): smaller lights belong into the scene file."""
 
 HEADINGS = (
     "mesh",
@@ -139,8 +158,8 @@ def faults(mesh, triangles, expected):
     size = np.ptp(mesh.positions, axis=0)
     if np.abs(size - expected["size"]).max() > 0.01:
         yield f"its size is {size.round(3)}"
-    if mesh.positions[:, 1].min() != 0:
-        yield "it does not stand on y = 0"
+    if abs(mesh.positions[:, 1].min() - (bottom := expected.get("bottom", 0.0))) > 1e-9:
+        yield f"it does not stand on y = {bottom:g}"
     yield from normal_faults(mesh)
 
 
@@ -170,10 +189,26 @@ def check_file(name):
     return not found
 
 
+def check_panorama(path):
+    """Print a panorama's figures and faults; true if it has none."""
+    pixels = hdr.read(path)
+    found = []
+    if pixels.shape != (*PANORAMA_TEXELS, 3):
+        found.append(f"its shape is {pixels.shape}")
+    if not (pixels.min() > 0 and pixels.max() < BRIGHTEST):
+        found.append(f"its radiance goes from {pixels.min():g} to {pixels.max():g}")
+    height, width, _ = pixels.shape
+    brightest = ", ".join(f"{channel:.2f}" for channel in pixels.max(axis=(0, 1)))
+    print(f"{path.stem}: {width} x {height} texels, radiance up to {brightest}; {'; '.join(found) or 'ok'}")
+    return not found
+
+
 def main():
-    """Check every mesh; the exit status."""
+    """Check every mesh and panorama; the exit status."""
     print(COLUMNS.format(*HEADINGS))
-    return 0 if all([check_file(name) for name in EXPECTED]) else 1
+    sound = [check_file(name) for name in EXPECTED]
+    sound += [check_panorama(path) for path in sorted(PANORAMAS.glob("*.hdr"))]
+    return 0 if all(sound) else 1
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Write every mesh of the project's scenes to assets/meshes, and check them.
+"""Write every mesh and panorama of the project's scenes, and check them.
 
     pip install -r assets/generate/requirements.txt
     python assets/generate/generate.py
@@ -12,8 +12,15 @@ import sys
 import ball
 import check
 import crystal
+import drink
+import hdr
+import ice_cube
 import obj
+import ring
+import sky
 import teapot
+import tube
+import tumbler
 import wine_glass
 
 BUILDERS = {
@@ -21,14 +28,26 @@ BUILDERS = {
     "crystal": (crystal.build, "Round brilliant, flat facets"),
     "ball": (ball.build, "Ball, a subdivided icosahedron"),
     "wine-glass": (wine_glass.build, "Empty wine glass, a solid of revolution"),
+    "tumbler": (tumbler.build, "Empty tumbler, a solid of revolution"),
+    "drink": (drink.build, "What is in the tumbler; reaches a little into its wall and floor"),
+    "ice-cube": (ice_cube.build, "Ice cube with rounded edges"),
+    "ring": (ring.build, "Wide ring with rounded edges, a solid of revolution"),
+    "tube": (tube.build, "Ring of round cross-section, such as a neon tube"),
+}
+
+PANORAMAS = {
+    "sky": (sky.build, "Clear sky with the glow about the sun, without its disc"),
 }
 
 
 def main():
-    """Write and check all meshes; the exit status."""
+    """Write and check all; the exit status."""
     check.MESHES.mkdir(parents=True, exist_ok=True)
     for name, (build, title) in BUILDERS.items():
         obj.write(check.MESHES / f"{name}.obj", build(), title)
+    check.PANORAMAS.mkdir(parents=True, exist_ok=True)
+    for name, (build, title) in PANORAMAS.items():
+        hdr.write(check.PANORAMAS / f"{name}.hdr", build(), title)
     return check.main()
 
 

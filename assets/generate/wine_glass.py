@@ -8,17 +8,8 @@ so that the surface is smooth throughout.
 
 import numpy as np
 
-from bezier import slopes, weights
-from mesh import Mesh, grid_triangles, index_rows, unit, without_collapsed
-
-AROUND = 128
-"""Steps around the axis."""
-
-QUARTER_ARC = 0.5522847
-"""Length of a Bézier quarter circle's handles, in radii."""
-
-CREASE_DEGREES = 40.0
-"""Pieces that meet at less than this share one normal."""
+from lathe import QUARTER_ARC, turned
+from mesh import unit
 
 # Pieces as control points (radius, height) in metres, and the steps along each.
 FOOT_AND_STEM = [
@@ -62,49 +53,6 @@ def outline_pieces():
     return FOOT_AND_STEM + BOWL_OUTSIDE + over_rim + [(inner_wall, 14)] + BOWL_INSIDE
 
 
-def profile():
-    """Points (radius, height) along the outline, and for each step its two end normals.
-
-    Returns (n + 1, 2) points and (n, 2, 2) normals pointing out of the glass.
-    """
-    points, normals = [np.array([outline_pieces()[0][0][0]])], []
-    for controls, steps in outline_pieces():
-        t = np.linspace(0, 1, steps + 1)
-        tangents = unit(slopes(t) @ np.array(controls))
-        outward = np.stack([tangents[:, 1], -tangents[:, 0]], axis=1)
-        points.append((weights(t) @ np.array(controls))[1:])
-        normals.append(np.stack([outward[:-1], outward[1:]], axis=1))
-    return np.concatenate(points), smooth_joints(np.concatenate(normals))
-
-
-def smooth_joints(normals):
-    """The steps' end normals, averaged where neighbours differ by less than the crease."""
-    ends, starts = normals[:-1, 1], normals[1:, 0]
-    smooth = np.sum(ends * starts, axis=1) > np.cos(np.radians(CREASE_DEGREES))
-    mean = unit(ends[smooth] + starts[smooth])
-    ends[smooth] = mean
-    starts[smooth] = mean
-    return normals
-
-
 def build():
     """The wine glass: 0.8 m tall, its foot standing on y = 0."""
-    points, step_normals = profile()
-    turns = 2 * np.pi * np.arange(AROUND + 1) / AROUND
-    circle = np.stack([np.cos(turns), np.zeros_like(turns), -np.sin(turns)], axis=1)
-    up = np.array([0.0, 1.0, 0.0])
-
-    def revolve(flat):
-        return flat[:, None, :1] * circle + flat[:, None, 1:] * up
-
-    strip = grid_triangles(2, AROUND + 1)[:, ::-1].reshape(-1)
-    positions, normals = [], []
-    for step, ends in enumerate(step_normals):
-        positions.append(revolve(points[step : step + 2]).reshape(-1, 3)[strip])
-        normals.append(revolve(ends).reshape(-1, 3)[strip])
-
-    distinct, at = index_rows(np.concatenate(positions), 9)
-    distinct_normals, normal_at = index_rows(np.concatenate(normals), 6)
-    triangles = at.reshape(-1, 3)
-    kept = without_collapsed(triangles)
-    return Mesh(distinct, triangles[kept], unit(distinct_normals), normal_at.reshape(-1, 3)[kept])
+    return turned(outline_pieces())
