@@ -23,6 +23,10 @@ import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
 const SLOT_MICROFACET: u32 = 4096u;
 /// First slot of the padded numbers of vertices that gather light, eight each.
 const SLOT_VERTEX: u32 = 8192u;
+/// The least probability with which a path takes the gloss over a base.
+const LEAST_GLOSS_CHANCE: f32 = 0.25;
+/// Receivers that a path meets before roulette may end it.
+const BOUNCES_BEFORE_ROULETTE: u32 = 3u;
 /// The share of the distance to a light that a shadow ray covers.
 const SHADOW_RAY_LENGTH: f32 = 0.9999;
 
@@ -132,8 +136,9 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
     if vertex.is_receiver {
         vertex.gloss = gloss_reflectance(material, -dot((*path).direction, point.n_s), vertex.sides);
         let mean = (vertex.gloss.x + vertex.gloss.y + vertex.gloss.z) / 3.0;
-        // A black base is not worth a choice.
-        vertex.specular_chance = select(1.0, mean, any(material.base > vec3<f32>(0.0)));
+        // A weak gloss may reflect what is bright, so it is looked at more often than its share. A black base is not worth a choice.
+        let chance = select(0.0, max(mean, LEAST_GLOSS_CHANCE), mean > 0.0);
+        vertex.specular_chance = select(1.0, chance, any(material.base > vec3<f32>(0.0)));
     }
     return vertex;
 }
@@ -302,7 +307,9 @@ fn meet_surface(path: ptr<function, Path>, hit: Hit) {
     } else {
         (*path).bounces += 1u;
         (*path).goes_on = (*path).goes_on && (*path).bounces <= camera_params.max_bounces;
-        play_roulette(path);
+        if (*path).bounces > BOUNCES_BEFORE_ROULETTE {
+            play_roulette(path);
+        }
     }
 }
 

@@ -10,9 +10,9 @@ use glam::Vec3;
 
 use crate::environment::EnvironmentRecord;
 
-/// The share of next-event estimation that goes to the lights in proportion to their power; the rest goes to all evenly, so that a weak
-/// lamp is not forgotten beside the sun.
-const BY_POWER: f32 = 0.75;
+/// The share of next-event estimation that goes to the lights in proportion to the irradiance that they may give what the camera looks at;
+/// the rest goes to all evenly, so that a lamp that is weak there is not forgotten where it is strong.
+const BY_IRRADIANCE: f32 = 0.75;
 
 /// One emitter.
 #[derive(Clone, Debug)]
@@ -38,6 +38,16 @@ impl Emitter {
     /// One of [`light_kind`].
     pub fn kind(&self) -> u32 {
         self.record.kind
+    }
+
+    /// An estimate of the irradiance at a point, whatever faces or blocks it, summed over the channels, W/m². An environment counts from
+    /// all directions, four times what a surface takes of it: it is noisier than light from one direction.
+    fn irradiance_at(&self, point: Vec3, around: &BoundingSphere) -> f32 {
+        let area = match self.bounds {
+            Some(bounds) => 4.0 * PI * bounds.center.distance_squared(point).max(bounds.radius * bounds.radius),
+            None => PI * around.radius * around.radius,
+        };
+        self.flux.element_sum() / area.max(f32::MIN_POSITIVE)
     }
 }
 
@@ -113,7 +123,7 @@ impl Lights {
             lights.gather_surface(scene, candidate, triangles);
         }
         candidates.retain(|candidate| candidate.emitter.flux != Vec3::ZERO);
-        lights.arrange(candidates);
+        lights.arrange(candidates, scene.camera.look_at, around);
         lights
     }
 
@@ -157,7 +167,7 @@ impl Lights {
     }
 
     /// Gives every emitter its place and its probability.
-    fn arrange(&mut self, candidates: Vec<Candidate>) {
+    fn arrange(&mut self, candidates: Vec<Candidate>, seen: Vec3, around: &BoundingSphere) {
         self.emitters = candidates.into_iter().map(|candidate| candidate.emitter).collect();
         self.emitters.sort_by_key(|emitter| match emitter.kind() {
             light_kind::SPHERE => 0,
@@ -166,13 +176,13 @@ impl Lights {
         });
         self.sphere_count = self.emitters.iter().filter(|e| e.kind() == light_kind::SPHERE).count();
         self.first_sky = self.emitters.iter().filter(|e| e.bounds.is_some()).count();
-        let total: f32 = self.emitters.iter().map(|emitter| emitter.flux.element_sum()).sum();
+        let total: f32 = self.emitters.iter().map(|emitter| emitter.irradiance_at(seen, around)).sum();
         let even = 1.0 / self.emitters.len().max(1) as f32;
         let mut before = 0.0;
         let last = self.emitters.len();
         for (index, emitter) in self.emitters.iter_mut().enumerate() {
             emitter.index = index;
-            before += BY_POWER * (emitter.flux.element_sum() / total) + (1.0 - BY_POWER) * even;
+            before += BY_IRRADIANCE * emitter.irradiance_at(seen, around) / total + (1.0 - BY_IRRADIANCE) * even;
             emitter.record.cumulative_probability = if index + 1 == last { 1.0 } else { before };
             self.records.push(emitter.record);
         }

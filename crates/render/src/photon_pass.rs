@@ -15,6 +15,7 @@ use crate::{
     guide::{Block, Emission, blocks},
     lights::{Emitter, Lights},
     random::combine,
+    renderer::MOST_IN_FLIGHT,
 };
 
 /// The bindings of `shaders/layout/photon_pass.wgsl`.
@@ -152,12 +153,17 @@ impl Photons {
         if range.end > limit {
             return Err(Error::TooManyPhotons { index: range.end - 1, limit });
         }
+        let mut submitted = 0u32;
         for light in &self.lights {
             for block in blocks(light.of_first(range.start, self.turns), light.of_first(range.end, self.turns)) {
                 let lanes = block.count.div_ceil(self.photons_per_invocation);
                 gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.block_params(light, &block, lanes)));
                 let groups = [scene_group, &self.params_group, &self.outputs_group];
                 gpu.dispatch(&light.pipeline, &groups, [lanes.div_ceil(WORKGROUP_SIZE), 1]);
+                submitted += 1;
+                if submitted.is_multiple_of(MOST_IN_FLIGHT) {
+                    gpu.wait()?;
+                }
             }
         }
         Ok(())

@@ -29,6 +29,9 @@ pub struct RendererOptions {
     pub map_budget: Option<u64>,
 }
 
+/// Dispatches that one call submits before it waits for them.
+pub(crate) const MOST_IN_FLIGHT: u32 = 256;
+
 /// Renders scenes on an application's device.
 ///
 /// Work is submitted to the device's queue and goes on after a call returns, except where a method says that it blocks. A
@@ -167,10 +170,11 @@ impl Renderer {
     /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot
     /// reach a caster has none, and the call does nothing.
     ///
-    /// The maps' irradiance is right for numbers 0 to N, in any order and any pieces, each once.
+    /// The maps' irradiance is right for numbers 0 to N, in any order and any pieces, each once. Blocks after each 256 blocks of at most
+    /// 262,144 photons until they are done, for submitted work takes memory.
     ///
     /// # Errors
-    /// If no scene is set or a number is beyond the sequences.
+    /// If no scene is set, a number is beyond the sequences or the device fails.
     pub fn emit_photons(&mut self, numbers: Range<u64>) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         if numbers.is_empty() || !on_device.photons.can_emit() {
@@ -183,10 +187,11 @@ impl Renderer {
         Ok(())
     }
 
-    /// Submits `count` further samples of every pixel, lit by the photons emitted so far.
+    /// Submits `count` further samples of every pixel, lit by the photons emitted so far. Blocks after each 256 of them until they are
+    /// done, for submitted work takes memory.
     ///
     /// # Errors
-    /// If no scene is set.
+    /// If no scene is set or the device fails.
     pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         if on_device.unresolved {
@@ -194,10 +199,13 @@ impl Renderer {
             self.resolve_pass.run(&self.gpu, &on_device.maps, units, on_device.photon_count);
             on_device.unresolved = false;
         }
-        for _ in 0..count {
+        for number in 1..=count {
             let group = &on_device.buffers.bind_group;
             on_device.samples.add(&self.gpu, group, on_device.sample_count);
             on_device.sample_count += 1;
+            if number.is_multiple_of(MOST_IN_FLIGHT) {
+                self.gpu.wait()?;
+            }
         }
         Ok(())
     }
