@@ -239,3 +239,34 @@ fn many_lights_give_the_sum_of_each() {
     let found = irradiance(&all).y;
     assert!((found / each - 1.0).abs() < 3e-3, "{found}, sum {each}");
 }
+
+#[test]
+fn photon_shares_change_noise_and_not_brightness() {
+    // Two lamps over a glass ball: whatever their shares, each casts the same caustic.
+    let map = |shares: [u32; 2]| {
+        let scene = scene(&format!(
+            "camera = {{ position = [0, 2.2, 3.2], look_at = [0, 0.2, 0], vertical_fov = 40 }}
+             render = {{ map_size = 33 }}
+             materials.glass = {{ type = \"dielectric\", ior = 1.5 }}
+             materials.floor = {{ type = \"diffuse\", albedo = 0.8 }}
+             lights = [
+                 {{ type = \"point\", position = [1, 2.5, 0.6], flux = [35, 0, 0], photon_share = {} }},
+                 {{ type = \"sphere\", center = [-0.8, 2, 0], radius = 0.1, flux = [0, 1, 0], photon_share = {} }},
+             ]
+             objects = [
+                 {{ rectangle = {{ center = [0, 0, 0], edge_u = [2, 0, 0], edge_v = [0, 0, -2] }}, material = \"floor\" }},
+                 {{ sphere = {{ center = [0, 0.4, 0], radius = 0.25, subdivisions = 5 }}, material = \"glass\" }},
+             ]",
+            shares[0], shares[1]
+        ));
+        let renderer = diacaustic_tests::emit(&scene, 600_000);
+        let ledgers = renderer.statistics().unwrap().ledgers;
+        assert!(ledgers.iter().all(|ledger| ledger.residue() == [0; 3] && ledger.deposited != [0; 3]));
+        renderer.energy_map(0).unwrap().expect("the floor is a receiver")
+    };
+    let (even, uneven) = (map([1, 1]), map([1, 5]));
+    let flux = |map: &diacaustic::EnergyMap| (0..map.sums.len()).map(|texel| map.flux(texel)).sum::<DVec3>();
+    let ratio = flux(&uneven) / flux(&even);
+    assert!((ratio.x - 1.0).abs() < 2e-3 && (ratio.y - 1.0).abs() < 2e-3, "{ratio}");
+    assert_ne!(even.sums, uneven.sums);
+}

@@ -253,3 +253,13 @@ fn prism_turns_light_by_its_minimum_deviation() {
     let found = ((from.1 - middle) / (10.0 - from.0)).atan().to_degrees() + 0.5 * deviation.to_degrees();
     assert!((found - 38.647).abs() < 0.02, "deviation {found}°, known 38.647°");
 }
+
+#[test]
+fn rough_metal_loses_what_is_documented() {
+    // A metal that reflects all but loses light between microfacets, along the normal: the table of docs/materials.md.
+    for (roughness, loss) in [(0.1, 0.0001), (0.3, 0.0093), (0.5, 0.0842), (0.8, 0.445)] {
+        let found =
+            plate(&format!("{{ type = \"conductor\", eta = 0.001, k = 1000, roughness = {roughness} }}"), 0.0).y;
+        assert!((1.0 - found - loss).abs() < 2e-3, "roughness {roughness}: loss {}, documented {loss}", 1.0 - found);
+    }
+}

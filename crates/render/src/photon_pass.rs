@@ -61,9 +61,13 @@ struct PhotonLight {
 impl PhotonLight {
     /// How many of the first `photons` photons are its own, where all lights together have `turns`.
     fn of_first(&self, photons: u64, turns: u64) -> u32 {
-        let own = u64::from(self.emitter.photon_share);
-        (photons / turns * own + (photons % turns).saturating_sub(self.first_turn).min(own)) as u32
+        of_first(photons, turns, self.first_turn, u64::from(self.emitter.photon_share))
     }
+}
+
+/// How many of the first `photons` photons fall on `share` of `turns` turns, from `first_turn` on.
+fn of_first(photons: u64, turns: u64, first_turn: u64, share: u64) -> u32 {
+    (photons / turns * share + (photons % turns).saturating_sub(first_turn).min(share)) as u32
 }
 
 /// One scene's photons on the device.
@@ -85,8 +89,11 @@ pub(crate) struct Photons {
     outputs_group: wgpu::BindGroup,
 }
 
-/// What lights send photons into.
-pub(crate) struct Targets<'a> {
+/// What photons need to know of a scene.
+pub(crate) struct PhotonScene<'a> {
+    pub settings: &'a RenderSettings,
+    pub lights: &'a Lights,
+    pub features: Features,
     pub casters: &'a [BoundingSphere],
     /// A sphere around everything.
     pub around: BoundingSphere,
@@ -96,37 +103,34 @@ impl Photons {
     pub fn new(
         gpu: &Gpu,
         pass: &mut PhotonPass,
-        settings: &RenderSettings,
-        lights: &Lights,
-        features: Features,
-        targets: &Targets,
+        scene: &PhotonScene,
         maps: &EnergyMaps,
         loop_limit: LoopLimit,
     ) -> Result<Self, Error> {
-        let pipeline = |emitter: &Emitter| pass.pipelines.get(gpu, features.for_photons_of(emitter.kind()));
-        let (photon_lights, turns) = photon_lights(lights, targets.casters, pipeline);
+        let pipeline = |emitter: &Emitter| pass.pipelines.get(gpu, scene.features.for_photons_of(emitter.kind()));
+        let (photon_lights, turns) = photon_lights(scene.lights, scene.casters, pipeline);
         let largest = photon_lights
             .iter()
             .map(|light| light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns))
             .fold(f32::MIN_POSITIVE, f32::max);
         let units_per_watt = (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2();
         let params = gpu.uniform::<PhotonParams>("photons");
-        let words = COUNTERS + (lights.account_count.max(1) * LIGHT_WORDS) as u64;
+        let words = COUNTERS + (scene.lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
         Ok(Self {
             lights: photon_lights,
             turns,
-            account_count: lights.account_count,
+            account_count: scene.lights.account_count,
             template: PhotonParams {
-                max_depth: settings.max_depth,
-                sphere_count: lights.sphere_count as u32,
+                max_depth: scene.settings.max_depth,
+                sphere_count: scene.lights.sphere_count as u32,
                 units_per_watt,
-                scene_center: targets.around.center.into(),
-                scene_radius: targets.around.radius,
+                scene_center: scene.around.center.into(),
+                scene_radius: scene.around.radius,
                 ..Default::default()
             },
-            seed: settings.seed,
-            photons_per_invocation: loop_limit.photons_per_invocation(settings.max_depth),
+            seed: scene.settings.seed,
+            photons_per_invocation: loop_limit.photons_per_invocation(scene.settings.max_depth),
             units_per_watt,
             params_group: gpu.bind(&pass.params_layout, &[&params]),
             outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger]),
@@ -272,5 +276,23 @@ impl Ledger {
             let spent = [self.deposited, self.direct, self.absorbed, self.escaped, self.cut_off, self.shading_normals];
             self.emitted[channel] - spent.iter().map(|account| account[channel]).sum::<i64>()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turns_give_each_light_its_share() {
+        // Shares 3, 1 and 2 of 6 turns.
+        let shares = [(0u64, 3u64), (3, 1), (4, 2)];
+        for photons in 0..40u64 {
+            let own: Vec<u64> =
+                shares.iter().map(|&(first, share)| u64::from(of_first(photons, 6, first, share))).collect();
+            assert_eq!(own.iter().sum::<u64>(), photons);
+            assert!(own.iter().zip(shares).all(|(own, (_, share))| own.abs_diff(photons * share / 6) <= share));
+        }
+        assert_eq!(shares.map(|(first, share)| of_first(600, 6, first, share)), [300, 100, 200]);
     }
 }

@@ -17,7 +17,7 @@ use crate::{
     features::Features,
     gpu::Gpu,
     lights::{Lights, emissive_materials},
-    photon_pass::{PhotonPass, Photons, Targets},
+    photon_pass::{PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
 };
@@ -130,19 +130,11 @@ impl Renderer {
         let on_device = self.gpu.guarded(|| {
             let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &lights, &placements)?;
             let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
-            let targets = Targets { casters: &casters, around };
-            let (settings, limit) = (&scene.settings, self.loop_limit);
+            let photon_scene =
+                PhotonScene { settings: &scene.settings, lights: &lights, features, casters: &casters, around };
+            let limit = self.loop_limit;
             Ok(OnDevice {
-                photons: Photons::new(
-                    &self.gpu,
-                    &mut self.photon_pass,
-                    settings,
-                    &lights,
-                    features,
-                    &targets,
-                    &maps,
-                    limit,
-                )?,
+                photons: Photons::new(&self.gpu, &mut self.photon_pass, &photon_scene, &maps, limit)?,
                 samples: Samples::new(&self.gpu, &mut self.camera_pass, scene, &lights, features, &maps)?,
                 scene: scene.clone(),
                 origins: bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
