@@ -41,7 +41,7 @@ pub struct Arguments {
 
     /// Photons in all, such as 1_000_000, in place of the scene's number
     ///
-    /// Rounded up to a multiple of the lights that send photons, so that each sends equally many.
+    /// Rounded up to a multiple of the sum of the lights' photon shares, so that each sends its share exactly.
     #[arg(long, value_name = "N", value_parser = parse_photons)]
     pub photons: Option<u64>,
 

@@ -48,7 +48,7 @@ pub(crate) fn about_photons(
 }
 
 const NOT_EMITTED: &str =
-    "no caustic can form: no light has flux to send and a dielectric or mirror surface to send it to";
+    "no caustic can form: no light shines on anything that casts light on, such as glass or metal";
 
 /// The shares of the photons' flux, over all lights and channels.
 struct Fates {

@@ -31,6 +31,7 @@ mod features;
 mod film;
 mod gpu;
 mod guide;
+mod host_scene;
 mod lights;
 mod material_records;
 mod photon_pass;

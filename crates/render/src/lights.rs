@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use diacaustic_scene::{LightKind, MaterialKind, RadianceMap, Scene};
+use diacaustic_scene::{Light, LightKind, MaterialKind, RadianceMap, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::light_kind;
 use diacaustic_surface::{BoundingSphere, WorldTriangle};
@@ -87,31 +87,9 @@ impl Lights {
             first_sky: 0,
             account_count: 0,
         };
-        let mut candidates: Vec<Candidate> = Vec::new();
-        for (number, light) in scene.lights.iter().enumerate().filter(|(_, light)| !light.kind.is_dark()) {
-            let record = record(&light.kind);
-            let emitter = Emitter {
-                number,
-                index: 0,
-                photon_share: light.photon_share,
-                flux: Vec3::ZERO,
-                bounds: None,
-                peak: 0.0,
-                media: place(&light.kind).map_or([0; 4], |point| media_keys(scene, point)),
-                record,
-            };
-            let mut candidate = Candidate { emitter, material: None };
-            match &light.kind {
-                LightKind::Environment { map, scale, .. } => {
-                    lights.set_environment(&mut candidate, map, *scale, around)
-                }
-                LightKind::Rectangle { .. } | LightKind::Disk { .. } => {
-                    candidate.material = Some(scene.materials.len() + number);
-                }
-                kind => measure(&mut candidate.emitter, kind, around),
-            }
-            candidates.push(candidate);
-        }
+        let shining = scene.lights.iter().enumerate().filter(|(_, light)| !light.kind.is_dark());
+        let mut candidates: Vec<Candidate> =
+            shining.map(|(number, light)| lights.candidate(scene, number, light, around)).collect();
         lights.account_count = scene.lights.len();
         for (material, _) in emissive_materials(scene) {
             let number = lights.account_count;
@@ -125,6 +103,29 @@ impl Lights {
         candidates.retain(|candidate| candidate.emitter.flux != Vec3::ZERO);
         lights.arrange(candidates, scene.camera.look_at, around);
         lights
+    }
+
+    /// A light of the scene, measured but for its triangles.
+    fn candidate(&mut self, scene: &Scene, number: usize, light: &Light, around: &BoundingSphere) -> Candidate {
+        let emitter = Emitter {
+            number,
+            index: 0,
+            photon_share: light.photon_share,
+            flux: Vec3::ZERO,
+            bounds: None,
+            peak: 0.0,
+            media: place(&light.kind).map_or([0; 4], |point| media_keys(scene, point)),
+            record: record(&light.kind),
+        };
+        let mut candidate = Candidate { emitter, material: None };
+        match &light.kind {
+            LightKind::Environment { map, scale, .. } => self.set_environment(&mut candidate, map, *scale, around),
+            LightKind::Rectangle { .. } | LightKind::Disk { .. } => {
+                candidate.material = Some(scene.materials.len() + number);
+            }
+            kind => measure(&mut candidate.emitter, kind, around),
+        }
+        candidate
     }
 
     fn set_environment(&mut self, candidate: &mut Candidate, map: &RadianceMap, scale: Vec3, around: &BoundingSphere) {

@@ -1,21 +1,19 @@
 //! The renderer: scene in, picture and energy maps out.
 
-use std::{ops::Range, time::Instant};
+use std::ops::Range;
 
 use diacaustic_scene::Scene;
 use diacaustic_shaders::QueryHit;
-use diacaustic_surface::{
-    Bvh, MapLayout, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
-};
+use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
     Emission, EnergyMap, Error, Film, LightReport, LoopLimit, MapSize, RenderParams, SceneReport, Statistics,
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
-    energy_map::{EnergyMaps, ResolvePass, place_maps},
-    features::Features,
+    energy_map::{EnergyMaps, ResolvePass},
     gpu::Gpu,
+    host_scene::HostScene,
     lights::{Lights, emissive_materials},
     photon_pass::{PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
@@ -107,56 +105,50 @@ impl Renderer {
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
-        let start = Instant::now();
-        let mut triangles = world_triangles(scene);
-        separate_touching(scene, &mut triangles);
-        let object_triangles = triangles.len();
-        triangles.extend(light_surfaces(scene));
-        let bvh = Bvh::build(&triangles)?;
-        let bvh_time = start.elapsed();
-        let start = Instant::now();
         let limits = self.gpu.device.limits();
         let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let placements = place_maps(
-            scene,
-            &triangles[..object_triangles],
-            self.options.map_budget.unwrap_or(u64::MAX).min(bindable),
-        );
-        let maps_time = start.elapsed();
-        let casters = caster_bounds(scene, &triangles[..object_triangles]);
-        let around = scene_bounds(scene, &triangles);
-        let lights = Lights::new(scene, &bvh.triangles, &around);
-        let features = Features::of(scene, &lights);
-        let on_device = self.gpu.guarded(|| {
-            let buffers = SceneBuffers::new(&self.gpu, &self.scene_layout, scene, &bvh, &lights, &placements)?;
-            let maps = EnergyMaps::new(&self.gpu, &self.resolve_pass, placements)?;
-            let photon_scene =
-                PhotonScene { settings: &scene.settings, lights: &lights, features, casters: &casters, around };
-            let limit = self.loop_limit;
-            Ok(OnDevice {
-                photons: Photons::new(&self.gpu, &mut self.photon_pass, &photon_scene, &maps, limit)?,
-                samples: Samples::new(&self.gpu, &mut self.camera_pass, scene, &lights, features, &maps)?,
-                scene: scene.clone(),
-                origins: bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
-                buffers,
-                maps,
-                photon_count: 0,
-                sample_count: 0,
-                unresolved: true,
-            })
-        })?;
+        let host = HostScene::build(scene, self.options.map_budget.unwrap_or(u64::MAX).min(bindable))?;
+        let (triangles, bvh_nodes) = (host.triangles, host.bvh.nodes.len());
+        let (bvh_time, maps_time) = (host.bvh_time, host.maps_time);
+        let lights = light_reports(scene, &host.lights);
+        let on_device = self.gpu.clone().guarded(|| self.upload(scene, host))?;
         let report = SceneReport {
-            triangles: object_triangles,
-            bvh_nodes: bvh.nodes.len(),
+            triangles,
+            bvh_nodes,
             bvh_time,
             maps_time,
             device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.film.size(),
             maps: map_sizes(&on_device.maps),
             photon_turns: on_device.photons.turns,
-            lights: light_reports(scene, &lights),
+            lights,
         };
         self.scene = Some(on_device);
         Ok(report)
+    }
+
+    /// Sends a scene to the device.
+    fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<OnDevice, Error> {
+        let gpu = &self.gpu;
+        let buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
+        let photons_of = PhotonScene {
+            settings: &scene.settings,
+            lights: &host.lights,
+            features: host.features,
+            casters: &host.casters,
+            around: host.around,
+        };
+        let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements)?;
+        Ok(OnDevice {
+            photons: Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?,
+            samples: Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?,
+            scene: scene.clone(),
+            origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
+            buffers,
+            maps,
+            photon_count: 0,
+            sample_count: 0,
+            unresolved: true,
+        })
     }
 
     /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot

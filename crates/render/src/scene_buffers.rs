@@ -2,13 +2,14 @@
 
 use diacaustic_scene::{LightKind, Scene};
 use diacaustic_shaders as shaders;
-use diacaustic_surface::{Bvh, WorldTriangle};
+use diacaustic_surface::WorldTriangle;
 use glam::Vec2;
 
 use crate::{
     Error,
     energy_map::MapPlacement,
     gpu::{Binding, Gpu, Purpose, texture_bytes},
+    host_scene::HostScene,
     lights::{Lights, emissive_materials},
     material_records::material,
 };
@@ -33,14 +34,8 @@ pub(crate) struct SceneBuffers {
 }
 
 impl SceneBuffers {
-    pub fn new(
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        scene: &Scene,
-        bvh: &Bvh,
-        lights: &Lights,
-        maps: &[Option<MapPlacement>],
-    ) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, host: &HostScene) -> Result<Self, Error> {
+        let HostScene { bvh, lights, placements: maps, .. } = host;
         let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
         let triangles: Vec<_> = bvh.triangles.iter().map(triangle).collect();
         let corners: Vec<_> = bvh

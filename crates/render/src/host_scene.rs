@@ -1,0 +1,64 @@
+//! What is built of a scene before anything is sent to the device.
+
+use std::time::{Duration, Instant};
+
+use diacaustic_scene::Scene;
+use diacaustic_surface::{
+    BoundingSphere, Bvh, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
+};
+
+use crate::{
+    Error,
+    energy_map::{MapPlacement, place_maps},
+    features::Features,
+    lights::Lights,
+};
+
+/// A scene on the host.
+#[derive(Debug)]
+pub(crate) struct HostScene {
+    /// Triangles of the objects.
+    pub triangles: usize,
+    /// The hierarchy over them and the surfaces of lights.
+    pub bvh: Bvh,
+    pub placements: Vec<Option<MapPlacement>>,
+    /// Bounding spheres of what casts light on.
+    pub casters: Vec<BoundingSphere>,
+    /// A sphere around everything.
+    pub around: BoundingSphere,
+    pub lights: Lights,
+    pub features: Features,
+    pub bvh_time: Duration,
+    pub maps_time: Duration,
+}
+
+impl HostScene {
+    /// Builds all of it; the energy maps whose size the scene leaves open take at most `map_budget` bytes.
+    pub fn build(scene: &Scene, map_budget: u64) -> Result<Self, Error> {
+        let start = Instant::now();
+        let mut triangles = world_triangles(scene);
+        separate_touching(scene, &mut triangles);
+        let of_objects = triangles.len();
+        triangles.extend(light_surfaces(scene));
+        let bvh = Bvh::build(&triangles)?;
+        let bvh_time = start.elapsed();
+
+        let start = Instant::now();
+        let placements = place_maps(scene, &triangles[..of_objects], map_budget);
+        let maps_time = start.elapsed();
+
+        let around = scene_bounds(scene, &triangles);
+        let lights = Lights::new(scene, &bvh.triangles, &around);
+        Ok(Self {
+            triangles: of_objects,
+            placements,
+            casters: caster_bounds(scene, &triangles[..of_objects]),
+            around,
+            features: Features::of(scene, &lights),
+            lights,
+            bvh,
+            bvh_time,
+            maps_time,
+        })
+    }
+}
