@@ -14,7 +14,7 @@ import package::layout::records::{load_light, load_material, load_triangle, reco
 import package::layout::scene::{
     Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER, NONE,
 };
-import package::medium::media::{medium_ior, transmittance, with_medium, without_medium};
+import package::medium::media::{media_beyond, medium_ior, transmittance};
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
@@ -126,12 +126,8 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
         (material.kind & MATERIAL_RECEIVER) != 0u, outer_interface(material, ior), media, vec3<f32>(0.0), 1.0,
     );
     if vertex.kind == MATERIAL_DIELECTRIC {
-        var beyond = without_medium(media, material.medium);
-        if point.front {
-            beyond = with_medium(media, material.medium);
-        }
-        vertex.beyond = beyond;
-        vertex.sides = Interface(ior, ior / medium_ior(beyond));
+        vertex.beyond = media_beyond(media, material.medium, point.front);
+        vertex.sides = Interface(ior, ior / medium_ior(vertex.beyond));
     }
     if vertex.is_receiver {
         vertex.gloss = gloss_reflectance(material, -dot((*path).direction, point.n_s), vertex.sides);

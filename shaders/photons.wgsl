@@ -16,7 +16,7 @@ import package::layout::photon_pass::{
 import package::layout::scene::{
     Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, NONE,
 };
-import package::medium::media::{medium_ior, transmittance, with_medium, without_medium};
+import package::medium::media::{media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
@@ -136,10 +136,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     var beyond = media;
     var sides = outer_interface(material, ior);
     if kind == MATERIAL_DIELECTRIC {
-        beyond = without_medium(media, material.medium);
-        if point.front {
-            beyond = with_medium(media, material.medium);
-        }
+        beyond = media_beyond(media, material.medium, point.front);
         if beyond.x == media.x {
             // A boundary within something of higher rank does not exist.
             (*photon).media = beyond;

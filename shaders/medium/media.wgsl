@@ -28,6 +28,11 @@ fn without_medium(media: vec4<u32>, key: u32) -> vec4<u32> {
     return select(media, shifted, vec4<bool>(from_x, from_y, from_z, from_w));
 }
 
+/// The list beyond a dielectric's boundary that is met from its front or its back.
+fn media_beyond(media: vec4<u32>, key: u32, front: bool) -> vec4<u32> {
+    return select(without_medium(media, key), with_medium(media, key), front);
+}
+
 /// Index of refraction of what fills the place.
 fn medium_ior(media: vec4<u32>) -> f32 {
     if media.x == 0u {
