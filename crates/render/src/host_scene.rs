@@ -62,3 +62,16 @@ impl HostScene {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use diacaustic_shaders::CAMERA;
+    use diacaustic_surface::RAY_OFFSET;
+
+    #[test]
+    fn touching_is_measured_in_the_kernels_ray_offsets() {
+        let after = CAMERA.source.split("const OFFSET_PER_METRE: f32 = ").nth(1).expect("the kernel's constant");
+        let written = after.split(';').next().expect("its end");
+        assert_eq!(written.trim_end_matches('f').parse::<f32>().unwrap(), RAY_OFFSET, "{written}");
+    }
+}

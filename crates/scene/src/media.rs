@@ -14,8 +14,13 @@ impl Scene {
         let mut media = Vec::new();
         for object in &self.objects {
             let Some(material) = object.materials.iter().copied().find(|m| self.is_dielectric(*m)) else { continue };
+            let place = object.world_from_object.inverse().transform_point3(point);
+            // Most points lie outside most objects, which the mesh's bounds tell without its boundary.
+            if !is_within_bounds(&object.mesh, place) {
+                continue;
+            }
             let Some(boundary) = self.dielectric_boundary(object) else { continue };
-            let turns = windings(&boundary, object.world_from_object.inverse().transform_point3(point));
+            let turns = boundary.winding_number(place).abs().round() as usize;
             media.extend(std::iter::repeat_n(material, turns));
         }
         media
@@ -55,10 +60,9 @@ impl Scene {
     }
 }
 
-/// How often a mesh winds around a point of the object frame, whichever way its triangles face.
-fn windings(mesh: &Mesh, point: Vec3) -> usize {
+/// Whether a point of the object frame lies in the box around a mesh.
+fn is_within_bounds(mesh: &Mesh, point: Vec3) -> bool {
     let lowest = mesh.positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let highest = mesh.positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    let is_in_bounds = point.cmpge(lowest).all() && point.cmple(highest).all();
-    if is_in_bounds { mesh.winding_number(point).abs().round() as usize } else { 0 }
+    point.cmpge(lowest).all() && point.cmple(highest).all()
 }

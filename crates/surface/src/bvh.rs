@@ -29,11 +29,8 @@ impl Bvh {
         if triangles.is_empty() {
             return Err(Error::NoTriangles);
         }
-        let boxes: Vec<Triangle> = triangles
-            .iter()
-            .map(|t| Triangle { v0: t.corners[0].into(), v1: t.corners[1].into(), v2: t.corners[2].into() })
-            .collect();
-        let bvh = build_cwbvh_from_tris(&boxes, BvhBuildParams::medium_build(), &mut Duration::default());
+        let bvh =
+            build_cwbvh_from_tris(&for_obvhs(triangles), BvhBuildParams::medium_build(), &mut Duration::default());
         let depth = depth(&bvh.nodes);
         if depth > MAX_DEPTH {
             return Err(Error::TooDeep { depth, limit: MAX_DEPTH });
@@ -41,6 +38,13 @@ impl Bvh {
         let triangles = bvh.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
         Ok(Self { nodes: bvh.nodes, triangles })
     }
+}
+
+/// The triangles as obvhs takes them.
+pub(crate) fn for_obvhs(triangles: &[WorldTriangle]) -> Vec<Triangle> {
+    let convert =
+        |t: &WorldTriangle| Triangle { v0: t.corners[0].into(), v1: t.corners[1].into(), v2: t.corners[2].into() };
+    triangles.iter().map(convert).collect()
 }
 
 /// Levels of nodes from the root down.

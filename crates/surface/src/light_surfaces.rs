@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use diacaustic_scene::{LightKind, Scene};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use crate::WorldTriangle;
 
@@ -39,7 +39,8 @@ fn outline(kind: &LightKind) -> Vec<Vec3> {
         }
         LightKind::Disk { center, normal, radius, .. } => {
             let normal = normal.as_dvec3().normalize();
-            let (tangent, bitangent) = frame(normal);
+            // `frame` of docs/photon-paths.md.
+            let (tangent, bitangent) = normal.any_orthonormal_pair();
             let step = TAU / f64::from(DISK_CORNERS);
             let reach = f64::from(radius) * (2.0 * PI / (f64::from(DISK_CORNERS) * step.sin())).sqrt();
             (0..DISK_CORNERS)
@@ -55,14 +56,6 @@ fn outline(kind: &LightKind) -> Vec<Vec3> {
         | LightKind::Distant { .. }
         | LightKind::Environment { .. } => Vec::new(),
     }
-}
-
-/// Two unit vectors that make a right-handed frame with a unit vector (Duff et al. 2017).
-fn frame(n: DVec3) -> (DVec3, DVec3) {
-    let sign = if n.z >= 0.0 { 1.0 } else { -1.0 };
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
 }
 
 #[cfg(test)]

@@ -11,10 +11,9 @@ use obvhs::{
     BvhBuildParams,
     aabb::Aabb,
     bvh2::{Bvh2, builder::build_bvh2_from_tris},
-    triangle::Triangle,
 };
 
-use crate::WorldTriangle;
+use crate::{WorldTriangle, bvh::for_obvhs};
 
 /// Share of a triangle's greatest coordinate or edge by which a ray's origin is moved off it: 2⁻¹⁹, `OFFSET_PER_METRE` of
 /// shaders/geometry/surface.wgsl.
@@ -39,11 +38,7 @@ pub fn separate_touching(scene: &Scene, triangles: &mut [WorldTriangle]) {
     if depths.is_empty() || objects < 2 {
         return;
     }
-    let boxes: Vec<Triangle> = triangles
-        .iter()
-        .map(|t| Triangle { v0: t.corners[0].into(), v1: t.corners[1].into(), v2: t.corners[2].into() })
-        .collect();
-    let bvh = build_bvh2_from_tris(&boxes, BvhBuildParams::very_fast_build(), &mut Duration::default());
+    let bvh = build_bvh2_from_tris(&for_obvhs(triangles), BvhBuildParams::very_fast_build(), &mut Duration::default());
     // No triangle counts as touched from farther.
     let reach = TOUCHING * RAY_OFFSET * triangles.iter().map(extent).fold(0.0, f32::max);
     let mut shifts = HashMap::new();
