@@ -6,7 +6,7 @@ mod gloss;
 pub mod microfacet;
 mod scatter;
 
-use diacaustic_scene::{MaterialKind, SMOOTH};
+use diacaustic_scene::{Material, MaterialKind, SMOOTH};
 use glam::DVec3;
 
 use crate::fresnel;
@@ -116,7 +116,7 @@ impl Surface {
             specular,
             microfacets: (roughness >= SMOOTH).then(|| Microfacets::of_roughness(f64::from(roughness))),
             base,
-            is_caster: kind.is_caster(),
+            is_caster: Material::new("", kind.clone()).is_caster(),
         }
     }
 

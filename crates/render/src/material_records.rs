@@ -16,8 +16,8 @@ const FRESNEL_STEPS: usize = 4096;
 pub(crate) fn material(scene: &Scene, index: usize) -> shaders::Material {
     let source = &scene.materials[index];
     let kind = &source.kind;
-    let caster = if kind.is_caster() { kinds::CASTER } else { 0 };
-    let receiver = if kind.is_receiver() { kinds::RECEIVER } else { 0 };
+    let caster = if source.is_caster() { kinds::CASTER } else { 0 };
+    let receiver = if source.is_receiver() { kinds::RECEIVER } else { 0 };
     let scattering = scattering(kind);
     shaders::Material {
         kind: scattering.kind | caster | receiver,

@@ -34,7 +34,7 @@
 //! let loaded = diacaustic_scene::parse_scene(text, Path::new("."), "ball.toml")?;
 //! assert!(loaded.warnings.is_empty());
 //! assert_eq!(loaded.scene.objects[1].name, "floor");
-//! assert!(loaded.scene.materials[loaded.scene.objects[0].material_of(0)].kind.is_caster());
+//! assert!(loaded.scene.materials[loaded.scene.objects[0].material_of(0)].is_caster());
 //!
 //! let error = diacaustic_scene::parse_scene(&text.replace("ior", "iro"), Path::new("."), "ball.toml").unwrap_err();
 //! assert!(error.to_string().contains("[materials.glass]: unknown key \"iro\"; did you mean \"ior\"?"));
@@ -56,6 +56,7 @@ mod read_toml;
 mod scene;
 mod solid;
 mod substances;
+mod texture;
 mod validate;
 
 pub use camera::Camera;
@@ -70,3 +71,4 @@ pub use radiance_map::RadianceMap;
 pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
 pub use substances::{SUBSTANCES, Substance, substance};
+pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};

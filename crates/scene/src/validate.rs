@@ -76,7 +76,7 @@ impl Scene {
         }
         let Some(map_size) = object.map_size else { return Ok(()) };
         at.number("map_size", map_size, 2..=8192, "from 2 to 8192")?;
-        let is_receiver = |index: &usize| self.materials[*index].kind.is_receiver();
+        let is_receiver = |index: &usize| self.materials[*index].is_receiver();
         at.require(object.materials.iter().any(is_receiver), "map_size", || {
             "is set, but the object is of glass, a mirror or metal, and only objects with a diffuse share have an energy \
              map; leave it out"
@@ -87,8 +87,8 @@ impl Scene {
     /// Why no caustic can form, if none can.
     fn caustic_warnings(&self) -> Vec<Warning> {
         let mut materials = self.objects.iter().flat_map(|object| &object.materials).map(|i| &self.materials[*i]);
-        let has_caster = materials.clone().any(|material| material.kind.is_caster());
-        let has_receiver = materials.clone().any(|material| material.kind.is_receiver());
+        let has_caster = materials.clone().any(|material| material.is_caster());
+        let has_receiver = materials.clone().any(|material| material.is_receiver());
         let has_light = self.lights.iter().any(|light| !light.kind.is_dark())
             || materials.any(|material| material.emission != Vec3::ZERO);
         let is_dark = self.background == Vec3::ZERO && self.ambient == Vec3::ZERO;

@@ -26,7 +26,7 @@ fn dielectric(ior: f32) -> MaterialKind {
 fn scene() -> Scene {
     let glass = dielectric(1.5);
     let plaster = MaterialKind::Diffuse { albedo: Vec3::splat(0.8) };
-    let material = |name: &str, kind| Material { name: name.to_owned(), kind, emission: Vec3::ZERO };
+    let material = |name: &str, kind| Material::new(name, kind);
     Scene {
         camera: Camera {
             position: Vec3::new(0.0, 2.0, 3.0),
@@ -145,10 +145,9 @@ fn broken_meshes_are_refused() {
     let flatten = |mesh: &mut Mesh| mesh.positions.iter_mut().for_each(|position| *position *= Vec3::X);
     ends_with(mesh_error(flatten), "mesh has 960 triangles, all of zero area");
     let strip = |mesh: &mut Mesh| {
-        mesh.chart = Chart::Natural;
-        mesh.uvs.clear();
+        mesh.chart = Chart::Natural(vec![Vec2::ZERO]);
     };
-    ends_with(mesh_error(strip), "no texture coordinates; give it some or make the chart automatic");
+    ends_with(mesh_error(strip), "mesh has a natural chart of 1 places; it must have 561, all of them finite");
 }
 
 #[test]
@@ -391,7 +390,7 @@ fn only_receivers_have_a_map_size() {
         scene.validate().map(|_| ()).map_err(|error| error.to_string())
     };
     let varnish = MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 };
-    assert!(varnish.is_caster());
+    assert!(Material::new("varnish", varnish.clone()).is_caster());
     assert_eq!(with_map(varnish), Ok(()));
     let metal = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 0.5 };
     assert!(with_map(metal).unwrap_err().starts_with("object \"floor\": map_size is set, but the object is of glass"));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-use diacaustic_scene::MaterialKind;
+use diacaustic_scene::{Material, MaterialKind};
 use glam::DVec3;
 
 use crate::fresnel::diffuse_reflectance;
@@ -28,7 +28,7 @@ impl Base {
             }
             _ => (DVec3::ZERO, None),
         };
-        kind.is_receiver().then_some(Self { albedo, ambient, phong })
+        Material::new("", kind.clone()).is_receiver().then_some(Self { albedo, ambient, phong })
     }
 
     /// Phong's lobe toward light in plain sight, 1/sr; the cosine is not in it.

@@ -123,7 +123,7 @@ pub fn scene(parts: Vec<(Mesh, MaterialKind, Vec3)>, lights: Vec<Light>) -> Scen
         output: OutputSettings::default(),
     };
     for (index, (mesh, kind, place)) in parts.into_iter().enumerate() {
-        scene.materials.push(Material { name: format!("material {index}"), kind, emission: Vec3::ZERO });
+        scene.materials.push(Material::new(format!("material {index}"), kind));
         scene.objects.push(Object {
             name: format!("object {index}"),
             mesh: Arc::new(mesh),

@@ -66,7 +66,7 @@ impl Entry {
         let kind = self.kind();
         let can_emit = !matches!(kind, MaterialKind::Dielectric { .. });
         let emission = self.emission.filter(|_| can_emit).unwrap_or(Vec3::ZERO);
-        Material { name: self.name.clone(), kind, emission }
+        Material { emission, ..Material::new(self.name.clone(), kind) }
     }
 
     fn kind(&self) -> MaterialKind {

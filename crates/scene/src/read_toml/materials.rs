@@ -56,9 +56,8 @@ pub(super) fn read_material(name: &str, table: &Table<'_>) -> Result<Material, E
     }
     table.allow_only(material_type.keys())?;
     Ok(Material {
-        name: name.to_owned(),
-        kind: read_kind(material_type, table)?,
         emission: emission.map_or(Ok(Vec3::ZERO), |entry| entry.color())?,
+        ..Material::new(name, read_kind(material_type, table)?)
     })
 }
 
