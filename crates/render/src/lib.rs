@@ -41,6 +41,7 @@ mod renderer;
 mod scene_buffers;
 mod self_test;
 mod statistics;
+mod texture_records;
 
 pub use display_pass::RenderParams;
 pub use energy_map::EnergyMap;

@@ -1,6 +1,6 @@
 //! What surfaces do to light.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{Texture, Textures};
 
@@ -145,6 +145,15 @@ impl Material {
     pub fn has_holes(&self) -> bool {
         let least = least(&self.textures.opacity, self.opacity);
         self.opacity_cutoff.map_or(least < 1.0, |cutoff| least < cutoff)
+    }
+
+    /// Share of the light that meets the surface at texture coordinates `uv`.
+    pub fn opacity_at(&self, uv: Vec2) -> f32 {
+        let opacity = self.opacity * self.textures.opacity.as_ref().map_or(1.0, |texture| texture.number_at(uv));
+        match self.opacity_cutoff {
+            Some(cutoff) => f32::from(u8::from(opacity >= cutoff)),
+            None => opacity,
+        }
     }
 
     fn least_roughness(&self, factor: f32) -> f32 {
