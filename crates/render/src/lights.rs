@@ -244,7 +244,7 @@ pub(crate) fn emissive_materials(scene: &Scene) -> Vec<(usize, String)> {
     let is_shown = |index: usize| scene.objects.iter().any(|object| object.materials.contains(&index));
     let materials = scene.materials.iter().enumerate();
     materials
-        .filter(|(index, material)| material.emission != Vec3::ZERO && is_shown(*index))
+        .filter(|(index, material)| material.is_emissive() && is_shown(*index))
         .map(|(index, material)| (index, format!("material {}", material.name)))
         .collect()
 }

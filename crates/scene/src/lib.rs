@@ -57,6 +57,7 @@ mod scene;
 mod solid;
 mod substances;
 mod texture;
+mod texture_image;
 mod validate;
 
 pub use camera::Camera;
@@ -72,3 +73,4 @@ pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
 pub use substances::{SUBSTANCES, Substance, substance};
 pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};
+pub use texture_image::{ColorSpace, Picture, load_texture};

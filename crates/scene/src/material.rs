@@ -156,6 +156,12 @@ impl Material {
         }
     }
 
+    /// Whether some point of the surface shines: emission, its picture and opacity are above 0 somewhere.
+    pub fn is_emissive(&self) -> bool {
+        let brightest = self.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.image.most().truncate());
+        self.emission * brightest != Vec3::ZERO && most(&self.textures.opacity, self.opacity) > 0.0
+    }
+
     fn least_roughness(&self, factor: f32) -> f32 {
         least(&self.textures.roughness, factor)
     }
@@ -163,6 +169,11 @@ impl Material {
     fn least_metallic(&self, factor: f32) -> f32 {
         least(&self.textures.metallic, factor)
     }
+}
+
+/// The greatest value that a number has on a surface.
+fn most(texture: &Option<Texture>, factor: f32) -> f32 {
+    factor * texture.as_ref().map_or(1.0, |texture| texture.image.most()[texture.channel])
 }
 
 /// The least value that a number has on a surface.

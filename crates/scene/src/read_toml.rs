@@ -4,6 +4,7 @@ mod lights;
 mod materials;
 mod objects;
 mod table;
+mod textures;
 
 use std::{fs, path::Path};
 
@@ -11,7 +12,7 @@ use glam::Vec3;
 
 use self::{
     lights::LightReader,
-    materials::read_material,
+    materials::MaterialReader,
     objects::ObjectReader,
     table::{Document, Table},
 };
@@ -76,8 +77,7 @@ impl<'d> Sections<'d> {
 
     fn read(&self, base_dir: &Path) -> Result<(Scene, Vec<Warning>), Error> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
-        let read_named = |(name, table): &(String, Table<'_>)| read_material(name, table);
-        let materials = self.materials.iter().map(read_named).collect::<Result<_, _>>()?;
+        let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
         let mut scene = Scene {
             background: color("background")?,
             ambient: color("ambient")?,

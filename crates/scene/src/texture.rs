@@ -26,10 +26,7 @@ impl TextureImage {
     /// # Errors
     /// What is wrong, if a side is 0 or longer than [`Self::MAX_SIZE`], the number of texels is another or a number is not finite.
     pub fn new(width: u32, height: u32, texels: Vec<[f16; 4]>) -> Result<Self, String> {
-        let most = Self::MAX_SIZE;
-        if !(1..=most).contains(&width) || !(1..=most).contains(&height) {
-            return Err(format!("has {width} × {height} texels; it must have from 1 × 1 to {most} × {most}"));
-        }
+        check_size(width, height)?;
         let (count, expected) = (texels.len(), width as usize * height as usize);
         if count != expected {
             return Err(format!("has {count} texels; {width} × {height} must have {expected}"));
@@ -86,6 +83,15 @@ impl std::fmt::Debug for TextureImage {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "TextureImage({} × {})", self.width, self.height)
     }
+}
+
+/// What is wrong with the size of a picture.
+pub(crate) fn check_size(width: u32, height: u32) -> Result<(), String> {
+    let most = TextureImage::MAX_SIZE;
+    if (1..=most).contains(&width) && (1..=most).contains(&height) {
+        return Ok(());
+    }
+    Err(format!("has {width} × {height} texels; it must have from 1 × 1 to {most} × {most}"))
 }
 
 fn to_vec4(texel: &[f16; 4]) -> Vec4 {

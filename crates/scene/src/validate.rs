@@ -4,6 +4,7 @@ mod at;
 mod lights;
 mod materials;
 mod meshes;
+mod textures;
 
 use std::{collections::HashMap, ops::Bound};
 
@@ -13,7 +14,7 @@ use self::{
     at::{At, above, is_in_reach},
     meshes::check_mesh,
 };
-use crate::{Camera, Error, LightKind, Object, OutputSettings, RenderSettings, Scene, Subject, Warning};
+use crate::{Camera, Error, LightKind, Material, Object, OutputSettings, RenderSettings, Scene, Subject, Warning};
 
 /// The least sine of the angle between the view and what is up.
 const LEAST_UP_SINE: f32 = 1e-4;
@@ -60,6 +61,7 @@ impl Scene {
             })?;
             check_mesh(&object.mesh).map_err(|problem| at.error("mesh", problem))?;
             self.check_object_materials(&at, object)?;
+            self.check_texture_coordinates(&at, object)?;
             check_placement(&at, object)?;
         }
         Ok(())
@@ -89,8 +91,7 @@ impl Scene {
         let mut materials = self.objects.iter().flat_map(|object| &object.materials).map(|i| &self.materials[*i]);
         let has_caster = materials.clone().any(|material| material.is_caster());
         let has_receiver = materials.clone().any(|material| material.is_receiver());
-        let has_light = self.lights.iter().any(|light| !light.kind.is_dark())
-            || materials.any(|material| material.emission != Vec3::ZERO);
+        let has_light = self.lights.iter().any(|light| !light.kind.is_dark()) || materials.any(Material::is_emissive);
         let is_dark = self.background == Vec3::ZERO && self.ambient == Vec3::ZERO;
         let findings = [
             (!has_caster, Warning::NoCaster),

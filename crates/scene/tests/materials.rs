@@ -165,7 +165,7 @@ fn faults_are_named() {
         ),
         (
             "type = 'thin_walled'\nroughness = 0.5",
-            "[materials.m]: unknown key \"roughness\"; known keys: type, ior, substance, tint",
+            "[materials.m]: unknown key \"roughness\"; known keys: type, tint, normal, opacity, ior, substance",
         ),
         (
             "type = 'conductor'",

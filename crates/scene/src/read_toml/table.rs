@@ -2,7 +2,7 @@
 
 use std::{fmt::Display, sync::Arc};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
@@ -180,6 +180,11 @@ impl<'d> Entry<'d> {
         self.finite("a number")
     }
 
+    /// A finite number where a picture could stand as well.
+    pub(super) fn number_without_picture(&self) -> Result<f32, Error> {
+        self.finite("a number or a picture { image = \"FILE\" }")
+    }
+
     fn finite(&self, expected: &'static str) -> Result<f32, Error> {
         let written = match self.value.get_ref() {
             DeValue::Float(float) => float.as_str(),
@@ -224,6 +229,25 @@ impl<'d> Entry<'d> {
         self.one_or_three("a colour: 3 numbers [r, g, b] or one number for gray")
     }
 
+    /// Three numbers, or one that stands for all three, where a picture could stand as well.
+    pub(super) fn color_without_picture(&self) -> Result<Vec3, Error> {
+        self.one_or_three("a colour: 3 numbers [r, g, b], one number for gray or a picture { image = \"FILE\" }")
+    }
+
+    /// Two numbers.
+    pub(super) fn pair(&self) -> Result<Vec2, Error> {
+        self.numbers("2 numbers [u, v]").map(Vec2::from_array)
+    }
+
+    /// Two numbers, or one that stands for both.
+    pub(super) fn one_or_pair(&self) -> Result<Vec2, Error> {
+        let expected = "one number or 2 numbers [u, v]";
+        match self.value.get_ref() {
+            DeValue::Array(_) => self.numbers(expected).map(Vec2::from_array),
+            _ => self.finite(expected).map(Vec2::splat),
+        }
+    }
+
     /// A factor for each axis, or one for all of them.
     pub(super) fn scale(&self) -> Result<Vec3, Error> {
         self.one_or_three("one number or 3 numbers [x, y, z]")
@@ -237,11 +261,19 @@ impl<'d> Entry<'d> {
     }
 
     fn three(&self, expected: &'static str) -> Result<Vec3, Error> {
+        self.numbers(expected).map(Vec3::from_array)
+    }
+
+    fn numbers<const N: usize>(&self, expected: &'static str) -> Result<[f32; N], Error> {
         let elements = match self.value.get_ref() {
-            DeValue::Array(array) if array.len() == 3 => self.elements(expected)?,
+            DeValue::Array(array) if array.len() == N => self.elements(expected)?,
             _ => return Err(self.wrong_type(expected)),
         };
-        Ok(Vec3::new(elements[0].number()?, elements[1].number()?, elements[2].number()?))
+        let mut numbers = [0.0; N];
+        for (number, element) in numbers.iter_mut().zip(elements) {
+            *number = element.number()?;
+        }
+        Ok(numbers)
     }
 
     pub(super) fn string(&self, expected: &'static str) -> Result<&'d str, Error> {
@@ -260,6 +292,21 @@ impl<'d> Entry<'d> {
         let array = self.value.get_ref().as_array().ok_or_else(|| self.wrong_type(expected))?;
         let element = |(index, value)| Self { value, key: format!("{}[{index}]", self.key), ..self.clone() };
         Ok(array.iter().enumerate().map(element).collect())
+    }
+
+    /// Whether the value is an array.
+    pub(super) fn is_array(&self) -> bool {
+        self.value.get_ref().is_array()
+    }
+
+    /// Whether the value is a table.
+    pub(super) fn is_table(&self) -> bool {
+        self.value.get_ref().is_table()
+    }
+
+    /// Whether the value is a table with this key.
+    pub(super) fn is_table_with(&self, key: &str) -> bool {
+        self.value.get_ref().as_table().is_some_and(|entries| entries.keys().any(|name| name.get_ref() == key))
     }
 
     /// The table that is the value, under the given name.

@@ -2,7 +2,10 @@
 
 use glam::Vec3;
 
-use super::at::{At, above};
+use super::{
+    at::{At, above},
+    textures::check_textures,
+};
 use crate::{Error, Material, MaterialKind, Scene, Subject};
 
 /// The most materials of a scene: kernels pack a material's index in 16 bits.
@@ -25,7 +28,8 @@ fn check_material(index: usize, material: &Material) -> Result<(), Error> {
     let is_glass = matches!(material.kind, MaterialKind::Dielectric { .. } | MaterialKind::ThinWalled { .. });
     at.require(!is_glass || material.emission == Vec3::ZERO, "emission", || {
         format!("is {}, but glass takes no emission; it must be 0", material.emission)
-    })
+    })?;
+    check_textures(&at, material)
 }
 
 fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
