@@ -42,6 +42,7 @@
 //! ```
 
 mod camera;
+mod dispersion;
 mod environment_image;
 mod error;
 mod light;
@@ -55,12 +56,14 @@ mod radiance_map;
 mod read_toml;
 mod scene;
 mod solid;
+mod spectrum;
 mod substances;
 mod texture;
 mod texture_image;
 mod validate;
 
 pub use camera::Camera;
+pub use dispersion::{Dispersion, STATED_WAVELENGTH};
 pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
 pub use light::{Light, LightKind};
@@ -71,6 +74,9 @@ pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
 pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
+pub use spectrum::{
+    LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,
+};
 pub use substances::{SUBSTANCES, Substance, substance};
 pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};
 pub use texture_image::{ColorSpace, Picture, load_texture};

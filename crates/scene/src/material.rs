@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::{Texture, Textures};
+use crate::{Dispersion, Texture, Textures};
 
 /// A named material.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,8 +59,10 @@ pub enum MaterialKind {
     },
     /// A dielectric: the object's closed surface bounds a volume of this index.
     Dielectric {
-        /// Index of refraction, > 0; that of air is 1.
+        /// Index of refraction at [`STATED_WAVELENGTH`](crate::STATED_WAVELENGTH), > 0; that of air is 1.
         ior: f32,
+        /// How the index changes with the wavelength.
+        dispersion: Dispersion,
         /// Factor on light at each crossing of the boundary, 0 to 1.
         tint: Vec3,
         /// Absorption coefficient σ of the interior, 1/m, ≥ 0 (Beer–Lambert).

@@ -3,6 +3,7 @@
 mod lights;
 mod materials;
 mod objects;
+mod refraction;
 mod table;
 mod textures;
 
@@ -160,6 +161,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "max_bounces",
         "map_size",
         "filter",
+        "wavelength",
     ])?;
     let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
@@ -174,6 +176,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         max_bounces: whole("max_bounces", default.max_bounces)?,
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
+        wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
     })
 }
 

@@ -14,7 +14,10 @@ use self::{
     at::{At, above, is_in_reach},
     meshes::check_mesh,
 };
-use crate::{Camera, Error, LightKind, Material, Object, OutputSettings, RenderSettings, Scene, Subject, Warning};
+use crate::{
+    Camera, Error, LONGEST_WAVELENGTH, LightKind, Material, Object, OutputSettings, RenderSettings,
+    SHORTEST_WAVELENGTH, Scene, Subject, Warning,
+};
 
 /// The least sine of the angle between the view and what is up.
 const LEAST_UP_SINE: f32 = 1e-4;
@@ -156,6 +159,10 @@ fn check_settings(settings: &RenderSettings) -> Result<(), Error> {
     })?;
     at.number("max_depth", settings.max_depth, 1..=1000, "from 1 to 1000")?;
     at.number("max_bounces", settings.max_bounces, 0..=1000, "from 0 to 1000")?;
+    if let Some(wavelength) = settings.wavelength {
+        let range = SHORTEST_WAVELENGTH as f32..=LONGEST_WAVELENGTH as f32;
+        at.number("wavelength", wavelength, range, "from 380 to 780 (nm)")?;
+    }
     settings.map_size.map_or(Ok(()), |map_size| at.number("map_size", map_size, 2..=8192, "from 2 to 8192"))
 }
 

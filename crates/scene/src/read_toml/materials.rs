@@ -5,10 +5,11 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{
-    table::{Entry, Table},
+    refraction::{self, Refraction, read_refraction, read_substance},
+    table::Table,
     textures::{DefaultChannel, Opacity, TextureReader},
 };
-use crate::{Error, METALS, Material, MaterialKind, Metal, SUBSTANCES, Substance, Textures, metal, substance};
+use crate::{Error, METALS, Material, MaterialKind, Metal, Textures, metal};
 
 /// Index of refraction of a coat or a thin wall that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -18,6 +19,12 @@ const COLOR: &str = "a colour: 3 numbers [r, g, b] or one number for gray";
 /// The channels, from 0, in which glTF's pictures of metal hold the roughness and the share of metal.
 const GLTF_ROUGHNESS: usize = 1;
 const GLTF_METALLIC: usize = 2;
+
+/// Keys of dielectrics that take no picture.
+const DIELECTRIC_KEYS: [&str; 8] = {
+    let [ior, substance, cauchy, sellmeier, abbe, dispersion] = refraction::KEYS;
+    [ior, substance, cauchy, sellmeier, abbe, dispersion, "absorption", "priority"]
+};
 
 /// What `type` in a material's table stands for.
 #[derive(Clone, Copy, PartialEq)]
@@ -51,7 +58,7 @@ impl MaterialType {
             Self::Phong => (&["diffuse", "emission", "normal", "opacity"], &["ambient", "specular", "shininess"]),
             Self::Mirror => (&["reflectance", "emission", "normal", "opacity"], &[]),
             Self::Conductor => (&["roughness", "emission", "normal", "opacity"], &["metal", "eta", "k"]),
-            Self::Dielectric => (&["tint", "roughness", "normal"], &["ior", "substance", "absorption", "priority"]),
+            Self::Dielectric => (&["tint", "roughness", "normal"], &DIELECTRIC_KEYS),
             Self::ThinWalled => (&["tint", "normal", "opacity"], &["ior", "substance"]),
             Self::Coated => (&["albedo", "roughness", "emission", "normal", "opacity"], &["ior"]),
             Self::MetallicRoughness => (&["base_color", "metallic", "roughness", "emission", "normal", "opacity"], &[]),
@@ -135,7 +142,8 @@ impl MaterialKeys<'_, '_, '_> {
             MaterialType::Dielectric => self.dielectric()?,
             MaterialType::ThinWalled => MaterialKind::ThinWalled {
                 ior: match table.either_if_any("ior", "substance")? {
-                    Some(entry) => read_substance(&entry)?.0,
+                    Some(entry) if entry.key() == "ior" => entry.number()?,
+                    Some(entry) => read_substance(&entry)?.ior,
                     None => DEFAULT_IOR,
                 },
                 tint: self.color_or("tint", Vec3::ONE)?,
@@ -154,10 +162,10 @@ impl MaterialKeys<'_, '_, '_> {
     }
 
     fn dielectric(&mut self) -> Result<MaterialKind, Error> {
-        let expected = "a number, the index of refraction, or \"substance\", a name such as \"water\"";
-        let (ior, absorption) = read_substance(&self.table.either("ior", "substance", expected)?)?;
+        let Refraction { ior, dispersion, absorption } = read_refraction(self.table)?;
         Ok(MaterialKind::Dielectric {
             ior,
+            dispersion,
             tint: self.color_or("tint", Vec3::ONE)?,
             absorption: self.table.get("absorption").map_or(Ok(absorption), |entry| entry.color())?,
             roughness: self.roughness_or(0.0)?,
@@ -205,19 +213,6 @@ impl MaterialKeys<'_, '_, '_> {
         self.textures.opacity = texture;
         Ok((factor, cutoff))
     }
-}
-
-/// The index of refraction and the absorption of the substance that the entry `substance` names; of the entry `ior`, which states
-/// the index alone, no absorption.
-fn read_substance(entry: &Entry<'_>) -> Result<(f32, Vec3), Error> {
-    if entry.key() == "ior" {
-        return Ok((entry.number()?, Vec3::ZERO));
-    }
-    let name = entry.string("the name of a substance")?;
-    let known = SUBSTANCES.map(|substance| substance.name);
-    let Substance { ior, absorption, .. } =
-        substance(name).ok_or_else(|| entry.unknown_name("substance", name, &known, "substances"))?;
-    Ok((ior, absorption))
 }
 
 /// The index of refraction η + ik of a conductor, from `metal` or from `eta` and `k`.

@@ -197,6 +197,12 @@ impl<'d> Entry<'d> {
         }
     }
 
+    /// A switch.
+    pub(super) fn boolean(&self) -> Result<bool, Error> {
+        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
+        Ok(*boolean)
+    }
+
     /// A whole number that is not negative.
     pub(super) fn whole(&self) -> Result<u64, Error> {
         let expected = "a whole number, 0 or greater";

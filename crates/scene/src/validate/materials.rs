@@ -6,7 +6,7 @@ use super::{
     at::{At, above},
     textures::check_textures,
 };
-use crate::{Error, Material, MaterialKind, Scene, Subject};
+use crate::{Dispersion, Error, LONGEST_WAVELENGTH, Material, MaterialKind, SHORTEST_WAVELENGTH, Scene, Subject};
 
 /// The most materials of a scene: kernels pack a material's index in 16 bits.
 const MOST_MATERIALS: usize = 65_535;
@@ -50,8 +50,9 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             at.channels("k", k, 0.0.., "finite and 0 or greater")?;
             check_roughness(roughness)
         }
-        MaterialKind::Dielectric { ior, tint, absorption, roughness, priority: _ } => {
+        MaterialKind::Dielectric { ior, dispersion, tint, absorption, roughness, priority: _ } => {
             check_ior(ior)?;
+            check_dispersion(at, ior, dispersion)?;
             check_share("tint", tint)?;
             at.channels("absorption", absorption, 0.0.., "0 or greater (1/m)")?;
             check_roughness(roughness)
@@ -71,4 +72,20 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             check_roughness(roughness)
         }
     }
+}
+
+/// Steps, nm, at which the index of refraction is looked at.
+const INDEX_STEP: usize = 5;
+
+fn check_dispersion(at: &At, ior: f32, dispersion: Dispersion) -> Result<(), Error> {
+    if let Dispersion::Abbe(number) = dispersion {
+        at.number("abbe", number, above(0.0), "finite and greater than 0")?;
+    }
+    for nm in (SHORTEST_WAVELENGTH as usize..=LONGEST_WAVELENGTH as usize).step_by(INDEX_STEP) {
+        let index = dispersion.index(ior, nm as f64);
+        at.require(index.is_finite() && index > 0.0, "dispersion", || {
+            format!("makes the index of refraction {index} at {nm} nm; it must be finite and greater than 0")
+        })?;
+    }
+    Ok(())
 }
