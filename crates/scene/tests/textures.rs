@@ -4,7 +4,7 @@ use std::{
     f32::consts::FRAC_PI_6,
     fs::{self, File},
     io::BufWriter,
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::Arc,
 };
 
@@ -733,4 +733,18 @@ fn a_black_picture_gives_no_light() {
     assert!(is_dark("emission = { image = 'rgb.png', factor = 0 }"));
     assert!(is_dark("emission = 1\nopacity = { image = 'black.png' }"));
     assert!(!is_dark("emission = { image = 'rgb.png' }"));
+}
+
+#[test]
+fn the_scene_of_the_assets_is_sound_and_shows_every_picture() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/scenes/textured.toml");
+    let loaded = load_scene(&path).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.warnings, []);
+    let textures = || loaded.scene.materials.iter().map(|material| &material.textures);
+    assert!(textures().any(|textures| textures.color.is_some()));
+    assert!(textures().any(|textures| textures.roughness.is_some()));
+    assert!(textures().any(|textures| textures.metallic.is_some()));
+    assert!(textures().any(|textures| textures.normal.is_some()));
+    assert!(textures().any(|textures| textures.opacity.is_some()));
+    assert!(textures().any(|textures| textures.emission.is_some()));
 }
