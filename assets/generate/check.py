@@ -220,7 +220,8 @@ def check_texture(path):
     if (size := path.stat().st_size) > MOST_TEXTURE_BYTES:
         found.append("the file is too large")
     height, width, channels = pixels.shape
-    print(f"{path.stem}: {width} x {height} texels, {channels} channels, {size / 1e3:.0f} kB; {'; '.join(found) or 'ok'}")
+    figures = f"{width} x {height} texels, {channels} channels, {size / 1e3:.0f} kB"
+    print(f"{path.stem}: {figures}; {'; '.join(found) or 'ok'}")
     return not found
 
 

@@ -606,7 +606,7 @@ fn no_file_makes_the_reader_panic() {
     for name in ["rgba.png", "deep.png", "light.hdr", "sound.jpg"] {
         let sound = fs::read(folder.path(name)).unwrap();
         let path = folder.path(&format!("broken-{name}"));
-        for place in 0..sound.len() {
+        for place in (0..sound.len()).step_by(sound.len().div_ceil(200)) {
             fs::write(&path, &sound[..place]).unwrap();
             let _ = load_texture(&path, ColorSpace::Linear);
             for flipped in [0x01, 0xff] {
