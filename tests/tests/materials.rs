@@ -3,7 +3,7 @@
 use std::{f64::consts::PI, sync::Arc};
 
 use diacaustic::{EnergyMap, Film};
-use diacaustic_scene::{Material, MaterialKind, Mesh, Object, Scene, metal};
+use diacaustic_scene::{Dispersion, Material, MaterialKind, Mesh, Object, Scene, metal};
 use diacaustic_tests::{emit, render, scene};
 use glam::{Affine3A, DVec3, Vec3};
 
@@ -217,6 +217,7 @@ fn prism_turns_light_by_its_minimum_deviation() {
     ));
     let kind = MaterialKind::Dielectric {
         ior: n as f32,
+        dispersion: Dispersion::None,
         tint: Vec3::ONE,
         absorption: Vec3::ZERO,
         roughness: 0.0,

@@ -68,12 +68,24 @@ fn make_table() -> [WavelengthEntry; WAVELENGTH_STEPS + 1] {
             primaries: at_place(&primaries(), place, |a, b, part| a.lerp(b, part)),
         }
     });
-    // Of what is linear between the entries, the mean is that of the trapezia.
-    let ends = 0.5 * (table[0].weight + table[WAVELENGTH_STEPS].weight);
-    let mean =
-        (table[1..WAVELENGTH_STEPS].iter().map(|entry| entry.weight).sum::<DVec3>() + ends) / WAVELENGTH_STEPS as f64;
-    table.iter_mut().for_each(|entry: &mut WavelengthEntry| entry.weight /= mean);
+    // What the steps in ξ miss is made good, so that every primary, and with them white, has its colour exactly.
+    let correction = colors_of_primaries(&table).inverse();
+    table.iter_mut().for_each(|entry: &mut WavelengthEntry| entry.weight = correction * entry.weight);
     table
+}
+
+/// The colours of the three primaries, as columns: means over ξ of what is linear between the entries, by Simpson's rule, which is exact for
+/// products of two such.
+fn colors_of_primaries(table: &[WavelengthEntry]) -> DMat3 {
+    let product = |weight: DVec3, primaries: DVec3| {
+        DMat3::from_cols(weight * primaries.x, weight * primaries.y, weight * primaries.z)
+    };
+    let cell = |pair: &[WavelengthEntry]| {
+        let (a, b) = (&pair[0], &pair[1]);
+        let middle = product(0.5 * (a.weight + b.weight), 0.5 * (a.primaries + b.primaries));
+        (product(a.weight, a.primaries) + 4.0 * middle + product(b.weight, b.primaries)) * (1.0 / 6.0)
+    };
+    table.windows(2).map(cell).fold(DMat3::ZERO, |sum, of_cell| sum + of_cell) * (1.0 / (table.len() - 1) as f64)
 }
 
 /// The colour of daylight at each of the tables' wavelengths, per nm, which integrates to white.
@@ -122,30 +134,25 @@ fn at_place<T: Copy>(table: &[T], place: f64, mix: impl Fn(T, T, f64) -> T) -> T
 mod tests {
     use super::*;
 
-    /// The mean over ξ of what is linear between the entries, by Simpson's rule, which is exact for products of two such.
-    fn mean(value: impl Fn(&WavelengthEntry) -> f64) -> f64 {
+    #[test]
+    fn white_is_white_and_primaries_keep_their_colour() {
         let table = wavelength_table();
-        let middle = |a: &WavelengthEntry, b: &WavelengthEntry| WavelengthEntry {
-            nm: 0.5 * (a.nm + b.nm),
-            weight: 0.5 * (a.weight + b.weight),
-            primaries: 0.5 * (a.primaries + b.primaries),
-        };
-        let cell = |pair: &[WavelengthEntry]| {
-            (value(&pair[0]) + 4.0 * value(&middle(&pair[0], &pair[1])) + value(&pair[1])) / 6.0
-        };
-        table.windows(2).map(cell).sum::<f64>() / WAVELENGTH_STEPS as f64
+        let ends = 0.5 * (table[0].weight + table[WAVELENGTH_STEPS].weight);
+        let sum = table[1..WAVELENGTH_STEPS].iter().map(|entry| entry.weight).sum::<DVec3>() + ends;
+        assert!((sum / WAVELENGTH_STEPS as f64 - 1.0).abs().max_element() < 1e-12);
+        assert!(colors_of_primaries(table).abs_diff_eq(DMat3::IDENTITY, 1e-12));
     }
 
     #[test]
-    fn white_is_white_and_primaries_keep_their_colour() {
-        for channel in 0..3 {
-            assert!((mean(|entry| entry.weight[channel]) - 1.0).abs() < 1e-12);
-            for primary in 0..3 {
-                let found = mean(|entry| entry.weight[channel] * entry.primaries[primary]);
-                let expected = f64::from(u8::from(channel == primary));
-                assert!((found - expected).abs() < 2e-4, "channel {channel} of primary {primary}: {found}");
-            }
-        }
+    fn weights_are_the_colours_of_the_spectrum() {
+        // Yellow has red and green, and cyan less than no red.
+        let at = |nm: f64| {
+            let place = number_of_wavelength(nm) * WAVELENGTH_STEPS as f64;
+            wavelength_table()[place.round() as usize].weight
+        };
+        let (red, green, blue, yellow, cyan) = (at(640.0), at(535.0), at(450.0), at(575.0), at(495.0));
+        assert!(red.x > 3.0 && red.y.abs() < 0.5 && green.y > 2.0 && green.x < 0.0 && blue.z > 3.0);
+        assert!(yellow.x > 1.0 && yellow.y > 1.0 && yellow.z < 0.0 && cyan.x < -1.0);
     }
 
     #[test]

@@ -182,7 +182,6 @@ mod tests {
             ("water", 55.7),
             ("fused_quartz", 67.8),
             ("sapphire", 72.2),
-            ("acrylic", 57.4),
         ] {
             let substance = substance(name).unwrap();
             let index = |nm| substance.dispersion.index(substance.ior, nm);

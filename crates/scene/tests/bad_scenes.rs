@@ -280,7 +280,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "ior = 1.5",
         "iro = 1.5",
-        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, tint, roughness, normal, ior, substance, absorption, priority"#,
+        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, tint, roughness, normal, ior, substance, cauchy, sellmeier, abbe, dispersion, absorption, priority"#,
     ),
     (
         "ior = 1.5",

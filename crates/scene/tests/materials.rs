@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, fs, path::Path};
 
-use diacaustic_scene::{METALS, Material, MaterialKind, SUBSTANCES, metal, parse_scene, substance};
+use diacaustic_scene::{Dispersion, METALS, Material, MaterialKind, SUBSTANCES, metal, parse_scene, substance};
 use glam::Vec3;
 
 fn scene(material: &str) -> String {
@@ -58,7 +58,14 @@ fn every_type_is_read_with_all_keys() {
         "type = 'dielectric'\nior = 1.4\ntint = [0.2, 0.4, 0.6]\nabsorption = 2\nroughness = 0.5\npriority = -3";
     assert_eq!(
         material(dielectric).kind,
-        MaterialKind::Dielectric { ior: 1.4, tint: color, absorption: Vec3::splat(2.0), roughness, priority: -3 }
+        MaterialKind::Dielectric {
+            ior: 1.4,
+            dispersion: Dispersion::None,
+            tint: color,
+            absorption: Vec3::splat(2.0),
+            roughness,
+            priority: -3
+        }
     );
     let thin_walled = "type = 'thin_walled'\nior = 1.4\ntint = [0.2, 0.4, 0.6]";
     assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color });
@@ -73,7 +80,14 @@ fn omitted_keys_have_defaults() {
         ),
         (
             "type = 'dielectric'\nior = 2",
-            MaterialKind::Dielectric { ior: 2.0, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 },
+            MaterialKind::Dielectric {
+                ior: 2.0,
+                dispersion: Dispersion::None,
+                tint: Vec3::ONE,
+                absorption: Vec3::ZERO,
+                roughness: 0.0,
+                priority: 0,
+            },
         ),
         ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }),
         ("type = 'coated'\nalbedo = 1", MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 }),
@@ -89,8 +103,14 @@ fn omitted_keys_have_defaults() {
 
 #[test]
 fn names_stand_for_measured_data() {
-    let dielectric =
-        |ior, absorption| MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption, roughness: 0.0, priority: 0 };
+    let dielectric = |ior, absorption| MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption,
+        roughness: 0.0,
+        priority: 0,
+    };
     for known in SUBSTANCES {
         let read = material(&format!("type = 'dielectric'\nsubstance = '{}'", known.name)).kind;
         assert_eq!(read, dielectric(known.ior, known.absorption));

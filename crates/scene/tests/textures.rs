@@ -9,8 +9,8 @@ use std::{
 };
 
 use diacaustic_scene::{
-    ColorSpace, LoadedScene, Material, MaterialKind, Mesh, NormalMap, Scene, Texture, TextureFilter, TextureImage,
-    Warning, Wrap, load_scene, load_texture,
+    ColorSpace, Dispersion, LoadedScene, Material, MaterialKind, Mesh, NormalMap, Scene, Texture, TextureFilter,
+    TextureImage, Warning, Wrap, load_scene, load_texture,
 };
 use glam::{Affine2, Vec2, Vec3, Vec4};
 use half::f16;
@@ -639,8 +639,14 @@ fn pictures_that_a_kind_does_not_have_are_refused() {
     let conductor = || MaterialKind::Conductor { eta: Vec3::ONE, k: Vec3::ONE, roughness: 0.5 };
     let glass = || MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
     let mirror = || MaterialKind::Mirror { reflectance: Vec3::ONE };
-    let dielectric =
-        || MaterialKind::Dielectric { ior: 1.5, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 };
+    let dielectric = || MaterialKind::Dielectric {
+        ior: 1.5,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    };
     let one = || Some(picture([1.0; 4]));
     let refused = |key: &str, what: &str| {
         format!("material \"m\": textures.{key} is set, but a material of this kind has no {what}; it must be none")

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use diacaustic_scene::{
-    Camera, Chart, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RadianceMap,
-    RenderSettings, Scene, Subject, Warning,
+    Camera, Chart, Dispersion, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings,
+    RadianceMap, RenderSettings, Scene, Subject, Warning,
 };
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 
@@ -20,7 +20,14 @@ fn object(name: &str, mesh: Mesh, material: usize) -> Object {
 }
 
 fn dielectric(ior: f32) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 }
+    MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    }
 }
 
 fn scene() -> Scene {
@@ -331,7 +338,14 @@ fn materials_out_of_range_are_refused() {
             "roughness is 1.5; it must be from 0 to 1".to_owned(),
         ),
         (
-            MaterialKind::Dielectric { ior: 1.5, tint: half, absorption: half, roughness: -0.1, priority: 0 },
+            MaterialKind::Dielectric {
+                ior: 1.5,
+                dispersion: Dispersion::None,
+                tint: half,
+                absorption: half,
+                roughness: -0.1,
+                priority: 0,
+            },
             "roughness is -0.1; it must be from 0 to 1".to_owned(),
         ),
         (

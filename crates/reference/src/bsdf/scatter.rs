@@ -185,7 +185,7 @@ fn adjoint(direction: DVec3, outgoing: DVec3, n_s: DVec3, n_g: DVec3) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use diacaustic_scene::MaterialKind;
+    use diacaustic_scene::{Dispersion, MaterialKind};
     use glam::Vec3;
 
     use super::*;
@@ -206,7 +206,14 @@ mod tests {
 
     fn glass() -> MaterialKind {
         let (tint, absorption) = (Vec3::splat(0.5), Vec3::ZERO);
-        MaterialKind::Dielectric { ior: 1.5, tint, absorption, roughness: 0.0, priority: 0 }
+        MaterialKind::Dielectric {
+            ior: 1.5,
+            dispersion: Dispersion::None,
+            tint,
+            absorption,
+            roughness: 0.0,
+            priority: 0,
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use diacaustic_scene::{
-    Camera, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings, Scene,
+    Camera, Dispersion, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings, Scene,
 };
 use glam::{Affine3A, Vec3};
 
@@ -74,12 +74,19 @@ pub fn absorbing_glass(ior: f32, absorption: f32) -> MaterialKind {
 
 /// Smooth glass of priority 0.
 pub fn tinted_glass(ior: f32, tint: Vec3, absorption: Vec3) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority: 0 }
+    MaterialKind::Dielectric { ior, dispersion: Dispersion::None, tint, absorption, roughness: 0.0, priority: 0 }
 }
 
 /// Clear rough glass.
 pub fn frosted(ior: f32, roughness: f32) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness, priority: 0 }
+    MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness,
+        priority: 0,
+    }
 }
 
 /// The same mesh in flat facets: interpolated normals do not keep phase space, and nested ones can catch light for good.
