@@ -257,7 +257,7 @@ fn faults_of_indices_are_named() {
         ("cauchy = [1.5]", "has 1 numbers; it must be [A, B] or [A, B, C], in µm² and µm⁴"),
         ("sellmeier = []", "has 0 pairs; it must be one to four pairs [B, C], C in µm²"),
         ("sellmeier = [[1, 0.2]]", "nm; it must be finite and greater than 0"),
-        ("ior = 1.5\nabbe = 40\ndispersion = 1", "it must be true or false"),
+        ("ior = 1.5\nabbe = 40\ndispersion = 1", "expected true or false, found the whole number 1"),
         ("abbe = 40", "the index of refraction, or \"substance\""),
     ] {
         let found = of(keys);
