@@ -1,24 +1,26 @@
 // Phase 1: photons leave the lights and fill the energy maps. docs/photon-paths.md defines each step.
 
 import package::bsdf::base::gloss_reflectance;
+import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
 import package::emitter::emission::emit;
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
-import package::layout::features::has_textures;
+import package::layout::features::{has_dispersion, has_textures};
 import package::layout::records::{load_material, load_triangle};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
-    energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
+    energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT, LEDGER_DISPERSION,
     LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS,
 };
 import package::layout::scene::{
     Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
 };
-import package::medium::media::{media_beyond, medium_ior, transmittance};
+import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
+import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
 import package::texture::surface::textured_surface;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
@@ -40,8 +42,9 @@ struct Photon {
     depth: u32,
     /// Choices made.
     choices: u32,
-    /// The number of its first choice.
-    first_choice: f32,
+    /// The number of its first choice, in scenes with dispersion that of its wavelength.
+    fifth_number: f32,
+    wavelength: Wavelength,
 }
 
 /// The largest flux of one photon in units; more can only come from interpolated normals, whose account takes the rest.
@@ -54,7 +57,7 @@ var<private> accounts: array<vec3<i32>, LEDGER_ACCOUNTS>;
 var<private> deposits: u32;
 
 fn to_units(beta: vec3<f32>) -> vec3<i32> {
-    return vec3<i32>(round(min(beta * photon_params.units_per_watt, vec3<f32>(MAX_UNITS))));
+    return vec3<i32>(round(clamp(beta * photon_params.units_per_watt, vec3<f32>(-MAX_UNITS), vec3<f32>(MAX_UNITS))));
 }
 
 /// The photon at a place in this block.
@@ -70,19 +73,33 @@ fn start_photon(place: u32) -> Photon {
     }
     let numbers = sobol_5(index, photon_params.seed);
     let emission = emit(numbers.first);
-    let beta = emission.flux * photon_params.flux_factor;
+    let wavelength = first_wavelength();
+    let beta = at_wavelength(emission.flux * photon_params.flux_factor, wavelength);
     let units = to_units(beta);
     accounts[LEDGER_EMITTED] += units;
-    return Photon(index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth);
+    return Photon(
+        index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth, wavelength,
+    );
 }
 
-/// Multiplies a photon's flux; the change goes to `account`.
-fn change_flux(photon: ptr<function, Photon>, factor: vec3<f32>, account: u32) {
-    let beta = (*photon).beta * factor;
+/// Gives a photon another flux; the change goes to `account`.
+fn set_flux(photon: ptr<function, Photon>, beta: vec3<f32>, account: u32) {
     let units = to_units(beta);
     accounts[account] += (*photon).units - units;
     (*photon).beta = beta;
     (*photon).units = units;
+}
+
+/// Multiplies a photon's flux by a color; the change goes to `account`.
+fn change_flux(photon: ptr<function, Photon>, factor: vec3<f32>, account: u32) {
+    set_flux(photon, (*photon).beta * at_wavelength(factor, (*photon).wavelength), account);
+}
+
+/// Gives a photon one wavelength.
+fn take_wavelength(photon: ptr<function, Photon>) {
+    let drawn = draw_wavelength((*photon).fifth_number);
+    (*photon).wavelength = drawn.wavelength;
+    set_flux(photon, at_wavelength((*photon).beta, drawn.wavelength) * drawn.weight, LEDGER_DISPERSION);
 }
 
 /// Adds flux to the four texels around a hit; their integers sum to `units` exactly.
@@ -109,7 +126,7 @@ fn deposit(hit: Hit, object: u32, front: bool, units: vec3<i32>) {
 /// The number of choice `choice` of a photon.
 fn choice_number(photon: ptr<function, Photon>, choice: u32) -> f32 {
     let later = padded_1((*photon).index, photon_params.seed, choice);
-    return select(later, (*photon).first_choice, choice == 0u);
+    return select(later, (*photon).fifth_number, choice == 0u && !has_dispersion);
 }
 
 /// Lets a photon end on a receiver's base.
@@ -118,7 +135,7 @@ fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, point: SurfacePoin
     if (*photon).depth == 0u {
         accounts[LEDGER_DIRECT] += (*photon).units;
     } else {
-        let factor = landing_factor((*photon).direction, point.n_g, point.n_s);
+        let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
         change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         accounts[LEDGER_DEPOSITED] += (*photon).units;
         deposit(hit, object, point.front, (*photon).units);
@@ -134,16 +151,16 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
         let textured = textured_surface(material, point, hit, triangle, d);
         material = textured.material;
-        point.n_s = textured.n_s;
+        point = textured.point;
     }
     let kind = material.kind & MATERIAL_KIND_BITS;
     let is_caster = (material.kind & MATERIAL_CASTER) != 0u;
     let is_receiver = (material.kind & MATERIAL_RECEIVER) != 0u;
 
     let media = (*photon).media;
-    let ior = medium_ior(media);
     var beyond = media;
-    var sides = outer_interface(material, ior);
+    let choice = (*photon).choices;
+    var u = choice_number(photon, choice);
     if kind == MATERIAL_DIELECTRIC {
         beyond = media_beyond(media, material.medium, point.front);
         if beyond.x == media.x {
@@ -153,11 +170,22 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
             (*photon).depth += 1u;
             return true;
         }
-        sides = Interface(ior, ior / medium_ior(beyond));
+        if (*photon).wavelength.number < 0.0 && (is_dispersive(media) || is_dispersive(beyond)) {
+            let split = split_colors(media, beyond, -dot(d, point.n_s), material.gloss <= 0.0, u, (*photon).fifth_number);
+            (*photon).fifth_number = split.xi;
+            if split.takes_wavelength {
+                take_wavelength(photon);
+            }
+            u = split.u;
+            change_flux(photon, split.factor, LEDGER_DISPERSION);
+        }
+    }
+    let ior = medium_ior(media, (*photon).wavelength);
+    var sides = outer_interface(material, ior);
+    if kind == MATERIAL_DIELECTRIC {
+        sides = Interface(ior, ior / medium_ior(beyond, (*photon).wavelength));
     }
 
-    let choice = (*photon).choices;
-    var u = choice_number(photon, choice);
     (*photon).choices += select(0u, 1u, is_caster && kind != MATERIAL_MIRROR);
     var gloss_chance = 1.0;
     if is_receiver {
@@ -246,7 +274,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             continue;
         }
         if photon.media.x != 0u {
-            change_flux(&photon, transmittance(photon.media, hit.t), LEDGER_ABSORBED);
+            change_flux(&photon, transmittance(photon.media, hit.t, photon.wavelength), LEDGER_ABSORBED);
         }
         if met_light {
             accounts[LEDGER_ABSORBED] += photon.units;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
-use crate::{gpu::Gpu, lights::Lights};
+use crate::{gpu::Gpu, lights::Lights, spectra_records::has_dispersion};
 
 /// What a kernel must be able to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -26,6 +26,8 @@ pub(crate) struct Features {
     textures: bool,
     /// Surfaces that rays may pass as if they were not there.
     holes: bool,
+    /// Light of single wavelengths.
+    dispersion: bool,
     /// The kind of light that emits photons.
     photon_light_kind: u32,
 }
@@ -43,14 +45,15 @@ impl Features {
             environment: shines(&[light_kind::ENVIRONMENT]),
             textures: scene.materials.iter().any(|material| material.textures.any()),
             holes: scene.materials.iter().any(Material::has_holes),
+            dispersion: has_dispersion(scene),
             photon_light_kind: 0,
         }
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32) -> Self {
-        let Self { gloss, conductors, textures, holes, .. } = self;
-        Self { gloss, conductors, textures, holes, photon_light_kind: kind, ..Self::default() }
+        let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
+        Self { gloss, conductors, textures, holes, dispersion, photon_light_kind: kind, ..Self::default() }
     }
 
     /// The values of the kernel's override constants.
@@ -64,6 +67,7 @@ impl Features {
             ("has_environment", f64::from(self.environment)),
             ("has_textures", f64::from(self.textures)),
             ("has_holes", f64::from(self.holes)),
+            ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()

@@ -94,6 +94,8 @@ pub(crate) struct PhotonScene<'a> {
     pub settings: &'a RenderSettings,
     pub lights: &'a Lights,
     pub features: Features,
+    /// The greatest factor by which one wavelength changes a channel of light.
+    pub greatest_weight: f32,
     pub casters: &'a [BoundingSphere],
     /// A sphere around everything.
     pub around: BoundingSphere,
@@ -113,7 +115,7 @@ impl Photons {
             .iter()
             .map(|light| light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns))
             .fold(f32::MIN_POSITIVE, f32::max);
-        let units_per_watt = (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2();
+        let units_per_watt = (LARGEST_PHOTON_UNITS / (largest * scene.greatest_weight)).log2().floor().exp2();
         let params = gpu.uniform::<PhotonParams>("photons");
         let words = COUNTERS + (scene.lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
@@ -224,6 +226,7 @@ impl Photons {
             escaped: account(ledger::ESCAPED),
             cut_off: account(ledger::CUT_OFF),
             shading_normals: account(ledger::SHADING_NORMALS),
+            dispersion: account(ledger::DISPERSION),
             units_per_watt: f64::from(self.units_per_watt),
         }
     }
@@ -273,8 +276,9 @@ impl Ledger {
     /// Emitted minus everything that became of it, in units: 0 in every channel.
     pub fn residue(&self) -> [i64; 3] {
         std::array::from_fn(|channel| {
-            let spent = [self.deposited, self.direct, self.absorbed, self.escaped, self.cut_off, self.shading_normals];
-            self.emitted[channel] - spent.iter().map(|account| account[channel]).sum::<i64>()
+            let spent = [self.deposited, self.direct, self.absorbed, self.escaped, self.cut_off];
+            let changed = [self.shading_normals, self.dispersion];
+            self.emitted[channel] - spent.iter().chain(&changed).map(|account| account[channel]).sum::<i64>()
         })
     }
 }
