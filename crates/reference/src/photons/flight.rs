@@ -6,6 +6,7 @@ use crate::bsdf::{Crossing, Outcome, SHADING_NORMAL_LIMIT, Surface};
 use crate::geometry::{Departure, Facing, Hit, Meeting, Ray};
 use crate::media::Media;
 use crate::random::PhotonNumbers;
+use crate::spectrum::Spectrum;
 
 use super::emission::{Emitter, Start};
 use super::{Landing, Ledger, PhotonJob};
@@ -68,6 +69,8 @@ pub struct PhotonPath {
     pub end: End,
     /// Direction of its last flight, unit length.
     pub direction: DVec3,
+    /// What its flux stands for at the end.
+    pub spectrum: Spectrum,
     /// Where its flux went, W.
     pub ledger: Ledger,
 }
@@ -79,6 +82,7 @@ struct Flight<'a> {
     ray: Ray,
     departure: Departure,
     flux: DVec3,
+    spectrum: Spectrum,
     /// What it is in.
     media: Media,
     vertices: Vec<Vertex>,
@@ -87,20 +91,24 @@ struct Flight<'a> {
 
 pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath {
     let numbers = PhotonNumbers::new(job.seed, job.light as u32, photon);
+    let numbers = if job.world.has_dispersion() { numbers.with_wavelength() } else { numbers };
     let Start { ray, flux } = emitter.emit(&numbers);
+    let spectrum = job.world.spectrum();
+    let flux = spectrum.color(flux);
     let mut flight = Flight {
         job,
         numbers,
         ray,
         departure: Departure::Light(job.light),
         flux,
+        spectrum,
         media: emitter.media(),
         vertices: Vec::new(),
         ledger: Ledger { emitted: flux, ..Ledger::default() },
     };
     let end = flight.follow();
-    let Flight { ray: last, vertices, ledger, .. } = flight;
-    PhotonPath { start: ray, flux, vertices, end, direction: last.direction, ledger }
+    let Flight { ray: Ray { direction, .. }, vertices, spectrum, ledger, .. } = flight;
+    PhotonPath { start: ray, flux, vertices, end, direction, spectrum, ledger }
 }
 
 impl Flight<'_> {
@@ -129,9 +137,12 @@ impl Flight<'_> {
     /// Goes on from a caster; ends on a receiver.
     fn meet_surface(&mut self, hit: &Hit) -> Option<End> {
         let world = self.job.world;
-        self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance));
+        self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance, &self.spectrum));
         let facing = world.facing(hit, self.ray.direction);
-        match Crossing::of(world, hit, &facing, self.media) {
+        if self.spectrum == Spectrum::Whole && Crossing::disperses(world, hit, &facing, self.media) {
+            self.disperse();
+        }
+        match Crossing::of(world, hit, &facing, self.media, self.spectrum) {
             Crossing::Nothing(media) => {
                 self.media = media;
                 self.record(hit, facing.point, Event::Passed);
@@ -182,9 +193,10 @@ impl Flight<'_> {
         let has_met_caster = !self.vertices.is_empty();
         self.attenuate(weight);
         if has_met_caster {
-            let [shading, geometric] =
-                [facing.normal_shading, facing.normal_geometric].map(|n| self.ray.direction.dot(n));
-            self.correct((shading / geometric).abs().min(SHADING_NORMAL_LIMIT));
+            // The limit keeps grazing photons from making bright dots. Light tracing and camera paths, which are the
+            // truth, have none: they find more light where it grazes the triangle, but not its shading normal.
+            let factor = self.job.world.landing_factor(hit, facing, self.ray.direction);
+            self.correct(factor.min(SHADING_NORMAL_LIMIT));
         }
         let Facing { point, front, .. } = *facing;
         let landing = Landing { triangle: hit.triangle, barycentric: hit.barycentric, front, flux: self.flux };
@@ -210,6 +222,13 @@ impl Flight<'_> {
         let corrected = self.flux * factor;
         self.ledger.shading_normals += self.flux - corrected;
         self.flux = corrected;
+    }
+
+    /// Takes a wavelength.
+    fn disperse(&mut self) {
+        let before = self.flux;
+        (self.spectrum, self.flux) = Spectrum::drawn(self.numbers.wavelength(), before);
+        self.ledger.dispersion += before - self.flux;
     }
 
     fn record(&mut self, hit: &Hit, position: DVec3, event: Event) {
