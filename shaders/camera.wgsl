@@ -110,7 +110,10 @@ fn start_path(pixel: vec2<u32>) -> Path {
 fn take_wavelength(path: ptr<function, Path>) {
     let drawn = draw_wavelength((*path).fifth_number);
     (*path).wavelength = drawn.wavelength;
-    (*path).beta = at_wavelength((*path).beta, drawn.wavelength) * drawn.weight;
+    // The exposure has divided by the square of the stated index where the camera stands.
+    let stated = medium_ior(camera_params.media, Wavelength(-1.0, vec3<f32>(0.0)));
+    let index = stated / medium_ior(camera_params.media, drawn.wavelength);
+    (*path).beta = at_wavelength((*path).beta, drawn.wavelength) * drawn.weight * (index * index);
 }
 
 /// A surface that a path has met.

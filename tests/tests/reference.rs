@@ -1,11 +1,14 @@
 //! The photon kernel against the double-precision reference: the same photons must fill the same texels.
 
-use diacaustic::{Emission, glam::DVec3};
+use diacaustic::{
+    Emission,
+    glam::{DVec3, Vec3},
+};
 use diacaustic_reference::{
     geometry::{Sphere, World},
     photons::{AimDisc, Emission as ReferenceEmission, MapLayout, PhotonJob, trace},
 };
-use diacaustic_scene::{MaterialKind, Scene, Texture};
+use diacaustic_scene::{MaterialKind, Mesh, Scene, Texture};
 use diacaustic_tests::{emit, normal_pattern, pattern, scene};
 
 const PHOTONS: u32 = 1 << 16;
@@ -29,9 +32,9 @@ struct Both {
     /// Texel sums of the floor's map, W times the photons.
     gpu: Vec<DVec3>,
     reference: Vec<DVec3>,
-    /// Emitted, deposited, direct, absorbed, escaped, shading normals.
-    gpu_ledger: [DVec3; 6],
-    reference_ledger: [DVec3; 6],
+    /// Emitted, deposited, direct, absorbed, escaped, shading normals, dispersion.
+    gpu_ledger: [DVec3; 7],
+    reference_ledger: [DVec3; 7],
 }
 
 fn both(scene: &Scene) -> Both {
@@ -84,9 +87,10 @@ fn both(scene: &Scene) -> Both {
             ledger.absorbed,
             ledger.escaped,
             ledger.shading_normals,
+            ledger.dispersion,
         ]
         .map(watts),
-        reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals],
+        reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals, l.dispersion],
     }
 }
 
@@ -236,7 +240,10 @@ fn pictures_on_glass_metal_and_floor() {
         ("{ type = \"conductor\", metal = \"gold\", roughness = 0.5 }", "{ type = \"coated\", albedo = 0.9 }"),
     ] {
         let mut scene = of(glass, floor, "");
-        for material in &mut scene.materials[..2] {
+        scene.objects[0].mesh = Mesh::sphere(Vec3::new(0.0, 0.3, 0.0), 0.3, 6).into();
+        for material in
+            scene.materials.iter_mut().filter(|material| ["glass", "floor"].contains(&material.name.as_str()))
+        {
             material.textures.normal = waves();
             match material.kind {
                 MaterialKind::Dielectric { roughness, .. } => {

@@ -189,7 +189,7 @@ impl<'a> World<'a> {
 
     /// Whether some light has one wavelength.
     pub fn has_dispersion(&self) -> bool {
-        self.spectrum != Spectrum::Whole || self.dielectrics.have_dispersion()
+        self.scene.has_dispersion()
     }
 
     /// The list of the dielectrics that enclose a point.

@@ -3,7 +3,7 @@
 use diacaustic_scene::{Dispersion, MaterialKind, Scene};
 use glam::{DVec3, Vec3};
 
-use crate::spectrum::Spectrum;
+use crate::spectrum::{self, Spectrum};
 
 /// The most dielectrics that a ray keeps in mind.
 const CAPACITY: usize = 4;
@@ -108,11 +108,6 @@ impl Dielectrics {
         }
     }
 
-    /// Whether the index of any of them changes with the wavelength.
-    pub fn have_dispersion(&self) -> bool {
-        self.by_rank.iter().any(|dielectric| !dielectric.dispersion.is_none())
-    }
-
     /// Whether a boundary lies between the two lists and the index on one of its sides changes with the wavelength.
     pub fn disperse_between(&self, media: &Media, beyond: &Media) -> bool {
         media.filling() != beyond.filling()
@@ -122,6 +117,13 @@ impl Dielectrics {
     /// Index of refraction of what fills the place; 1 in air.
     pub fn ior(&self, media: &Media, spectrum: &Spectrum) -> f64 {
         self.filling(media).map_or(1.0, |dielectric| dielectric.ior(spectrum))
+    }
+
+    /// Indices of refraction of what fills the place for red, green and blue light as a whole: means over the wavelengths' colours.
+    pub fn colored_ior(&self, media: &Media) -> DVec3 {
+        let index =
+            |dielectric: &Dielectric| spectrum::mean_of_colors(|nm| dielectric.dispersion.index(dielectric.ior, nm));
+        self.filling(media).map_or(DVec3::ONE, index)
     }
 
     /// σ of what fills the place, 1/m.

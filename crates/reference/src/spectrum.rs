@@ -47,6 +47,15 @@ impl Spectrum {
     }
 }
 
+/// The means over ξ of a function of the wavelength, nm, weighted by the channels of its colours.
+pub fn mean_of_colors(value: impl Fn(f64) -> f64) -> DVec3 {
+    let table = wavelength_table();
+    let weighted = |entry: &WavelengthEntry| entry.weight * value(entry.nm);
+    let ends = 0.5 * (weighted(&table[0]) + weighted(&table[WAVELENGTH_STEPS]));
+    let inner: DVec3 = table[1..WAVELENGTH_STEPS].iter().map(weighted).sum();
+    (inner + ends) / WAVELENGTH_STEPS as f64
+}
+
 /// The table of wavelengths between its entries.
 fn entry_at(number: f64) -> WavelengthEntry {
     let table = wavelength_table();

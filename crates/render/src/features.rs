@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
-use crate::{gpu::Gpu, lights::Lights, spectra_records::has_dispersion};
+use crate::{gpu::Gpu, lights::Lights};
 
 /// What a kernel must be able to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -45,7 +45,7 @@ impl Features {
             environment: shines(&[light_kind::ENVIRONMENT]),
             textures: scene.materials.iter().any(|material| material.textures.any()),
             holes: scene.materials.iter().any(Material::has_holes),
-            dispersion: has_dispersion(scene),
+            dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
         }
     }

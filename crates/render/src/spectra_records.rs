@@ -1,17 +1,12 @@
 //! Wavelengths and indices of refraction as the device knows them; docs/spectra.md.
 
-use diacaustic_scene::{Dispersion, MaterialKind, Scene, number_of_wavelength, wavelength_table};
+use diacaustic_scene::{Dispersion, Scene, number_of_wavelength, wavelength_table};
 use diacaustic_shaders::WAVELENGTH_STEPS;
 use glam::{DVec3, Vec3};
 
-/// Whether light of a scene has wavelengths.
-pub(crate) fn has_dispersion(scene: &Scene) -> bool {
-    scene.settings.wavelength.is_some() || dispersions(scene).next().is_some()
-}
-
 /// The greatest factor by which one wavelength changes a channel of light.
 pub(crate) fn greatest_weight(scene: &Scene) -> f32 {
-    if dispersions(scene).next().is_none() || scene.settings.wavelength.is_some() {
+    if !scene.has_dispersion() || scene.settings.wavelength.is_some() {
         return 1.0;
     }
     let weights = wavelength_table().iter().map(|entry| entry.weight.abs().max_element());
@@ -39,7 +34,7 @@ pub(crate) fn colored_index(ior: f32, dispersion: Dispersion) -> Vec3 {
 pub(crate) fn spectra_record(scene: &Scene) -> Vec<[f32; 4]> {
     let fixed = scene.settings.wavelength.map_or(-1.0, |nm| number_of_wavelength(f64::from(nm)) as f32);
     let mut record = vec![[fixed, 0.0, 0.0, 0.0]];
-    if !has_dispersion(scene) {
+    if !scene.has_dispersion() {
         return record;
     }
     let table = wavelength_table();
@@ -55,10 +50,8 @@ pub(crate) fn spectra_record(scene: &Scene) -> Vec<[f32; 4]> {
 
 /// The materials with dispersion, and what they do.
 fn dispersions(scene: &Scene) -> impl Iterator<Item = (usize, (f32, Dispersion))> {
-    scene.materials.iter().enumerate().filter_map(|(index, material)| match material.kind {
-        MaterialKind::Dielectric { ior, dispersion, .. } if !dispersion.is_none() => Some((index, (ior, dispersion))),
-        _ => None,
-    })
+    let materials = scene.materials.iter().enumerate();
+    materials.filter_map(|(index, material)| Some((index, material.dispersion()?)))
 }
 
 #[cfg(test)]

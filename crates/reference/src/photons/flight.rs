@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::bsdf::{Crossing, Outcome, SHADING_NORMAL_LIMIT, Surface};
+use crate::bsdf::{Crossing, Draw, Outcome, SHADING_NORMAL_LIMIT, Surface};
+use crate::fresnel;
 use crate::geometry::{Departure, Facing, Hit, Meeting, Ray};
 use crate::media::Media;
 use crate::random::PhotonNumbers;
@@ -83,6 +84,8 @@ struct Flight<'a> {
     departure: Departure,
     flux: DVec3,
     spectrum: Spectrum,
+    /// v, the number of its wavelength.
+    wavelength_number: f64,
     /// What it is in.
     media: Media,
     vertices: Vec<Vertex>,
@@ -93,6 +96,7 @@ pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath
     let numbers = PhotonNumbers::new(job.seed, job.light as u32, photon);
     let numbers = if job.world.has_dispersion() { numbers.with_wavelength() } else { numbers };
     let Start { ray, flux } = emitter.emit(&numbers);
+    let wavelength_number = numbers.wavelength();
     let spectrum = job.world.spectrum();
     let flux = spectrum.color(flux);
     let mut flight = Flight {
@@ -102,6 +106,7 @@ pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath
         departure: Departure::Light(job.light),
         flux,
         spectrum,
+        wavelength_number,
         media: emitter.media(),
         vertices: Vec::new(),
         ledger: Ledger { emitted: flux, ..Ledger::default() },
@@ -139,9 +144,8 @@ impl Flight<'_> {
         let world = self.job.world;
         self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance, &self.spectrum));
         let facing = world.facing(hit, self.ray.direction);
-        if self.spectrum == Spectrum::Whole && Crossing::disperses(world, hit, &facing, self.media) {
-            self.disperse();
-        }
+        let is_first = self.spectrum == Spectrum::Whole && Crossing::disperses(world, hit, &facing, self.media);
+        let choice = if is_first { self.split_colors(hit, &facing) } else { None };
         match Crossing::of(world, hit, &facing, self.media, self.spectrum) {
             Crossing::Nothing(media) => {
                 self.media = media;
@@ -153,13 +157,25 @@ impl Flight<'_> {
                 let weight = surface.passed_to_base(-self.ray.direction.dot(facing.normal_shading));
                 Some(self.land(hit, &facing, weight))
             }
-            Crossing::Surface(surface, beyond) => self.meet_caster(hit, &facing, &surface, beyond),
+            Crossing::Surface(surface, beyond) => self.meet_caster(hit, &facing, &surface, beyond, choice),
         }
     }
 
-    fn meet_caster(&mut self, hit: &Hit, facing: &Facing, surface: &Surface, beyond: Media) -> Option<End> {
+    /// `choice` stands in for the number of the choice if that is made already.
+    fn meet_caster(
+        &mut self,
+        hit: &Hit,
+        facing: &Facing,
+        surface: &Surface,
+        beyond: Media,
+        choice: Option<f64>,
+    ) -> Option<End> {
         let numbers = &mut self.numbers;
-        match surface.scatter(facing, self.ray.direction, || numbers.next_caster()) {
+        let draw = || {
+            let next = numbers.next_caster();
+            Draw { choice: choice.unwrap_or(next.choice), ..next }
+        };
+        match surface.scatter(facing, self.ray.direction, draw) {
             Outcome::Base(weight) => Some(self.land(hit, facing, weight)),
             Outcome::Lost => {
                 self.attenuate(DVec3::ZERO);
@@ -224,10 +240,46 @@ impl Flight<'_> {
         self.flux = corrected;
     }
 
-    /// Takes a wavelength.
+    /// The first boundary that disperses: reflects all colours, or takes a wavelength. Returns the number of the choice between
+    /// reflection and refraction if that is made.
+    fn split_colors(&mut self, hit: &Hit, facing: &Facing) -> Option<f64> {
+        let world = self.job.world;
+        let Crossing::Surface(surface, beyond) = Crossing::of(world, hit, facing, self.media, Spectrum::Whole) else {
+            return None;
+        };
+        let dielectrics = world.dielectrics();
+        let eta = |spectrum| dielectrics.ior(&self.media, spectrum) / dielectrics.ior(&beyond, spectrum);
+        let stated = eta(&Spectrum::Whole);
+        if surface.is_rough() || stated >= 1.0 {
+            self.disperse();
+            return None;
+        }
+        let cos = -self.ray.direction.dot(facing.normal_shading);
+        let chance = fresnel::reflectance(cos, stated);
+        if self.wavelength_number < chance {
+            let colored = dielectrics.colored_ior(&self.media) / dielectrics.colored_ior(&beyond);
+            self.wavelength_number /= chance;
+            self.recolor(DVec3::from(colored.to_array().map(|eta| fresnel::reflectance(cos, eta))) / chance);
+            return Some(0.0);
+        }
+        self.wavelength_number = (self.wavelength_number - chance) / (1.0 - chance);
+        self.disperse();
+        let eta = dielectrics.ior(&self.media, &self.spectrum) / dielectrics.ior(&beyond, &self.spectrum);
+        self.recolor(DVec3::splat((1.0 - fresnel::reflectance(cos, eta)) / (1.0 - chance)));
+        Some(1.0)
+    }
+
+    /// Takes the wavelength of the photon's number.
     fn disperse(&mut self) {
         let before = self.flux;
-        (self.spectrum, self.flux) = Spectrum::drawn(self.numbers.wavelength(), before);
+        (self.spectrum, self.flux) = Spectrum::drawn(self.wavelength_number, before);
+        self.ledger.dispersion += before - self.flux;
+    }
+
+    /// A factor of colours.
+    fn recolor(&mut self, factor: DVec3) {
+        let before = self.flux;
+        self.flux = before * factor;
         self.ledger.dispersion += before - self.flux;
     }
 
