@@ -6,9 +6,9 @@
 mod layout;
 
 pub use layout::{
-    AimTarget, BvhNode, CameraParams, DisplayParams, Light, MAX_AIM_TARGETS, Material, NONE, Object, PhotonParams,
-    QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
-    SharedStruct, Triangle, TriangleCorners, ledger, light_kind, material_kind,
+    AimTarget, BvhNode, CameraParams, DisplayParams, LOST, Landing, Light, MAX_AIM_TARGETS, Material, NONE, Object,
+    PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE,
+    SharedField, SharedStruct, Sighting, Triangle, TriangleCorners, ledger, light_kind, material_kind,
 };
 
 /// A linked kernel.

@@ -24,6 +24,10 @@ pub(crate) struct Features {
     environment: bool,
     /// The kind of light that emits photons.
     photon_light_kind: u32,
+    /// Whether a guide moves photons.
+    guide: bool,
+    /// Whether camera paths note which texels they see.
+    sightings: bool,
 }
 
 impl Features {
@@ -38,12 +42,19 @@ impl Features {
             distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
             environment: shines(&[light_kind::ENVIRONMENT]),
             photon_light_kind: 0,
+            guide: false,
+            sightings: false,
         }
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
-    pub fn for_photons_of(self, kind: u32) -> Self {
-        Self { gloss: self.gloss, conductors: self.conductors, photon_light_kind: kind, ..Self::default() }
+    pub fn for_photons_of(self, kind: u32, guide: bool) -> Self {
+        Self { gloss: self.gloss, conductors: self.conductors, photon_light_kind: kind, guide, ..Self::default() }
+    }
+
+    /// The same for camera paths that note what they see of the energy maps.
+    pub fn with_sightings(self) -> Self {
+        Self { sightings: true, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -56,6 +67,8 @@ impl Features {
             ("has_distant_lights", f64::from(self.distant_lights)),
             ("has_environment", f64::from(self.environment)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
+            ("has_guide", f64::from(self.guide)),
+            ("notes_sightings", f64::from(self.sightings)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }

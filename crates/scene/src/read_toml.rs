@@ -158,6 +158,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "seed",
         "max_depth",
         "max_bounces",
+        "guiding",
         "map_size",
         "filter",
     ])?;
@@ -172,6 +173,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         seed: whole("seed", default.seed)?,
         max_depth: whole("max_depth", default.max_depth)?,
         max_bounces: whole("max_bounces", default.max_bounces)?,
+        guiding: table.get("guiding").map_or(Ok(default.guiding), |entry| entry.boolean())?,
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
     })

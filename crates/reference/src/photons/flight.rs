@@ -87,7 +87,10 @@ struct Flight<'a> {
 
 pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath {
     let numbers = PhotonNumbers::new(job.seed, job.light as u32, photon);
-    let Start { ray, flux } = emitter.emit(&numbers);
+    let drawn = [0, 1, 2, 3].map(|dimension| numbers.emission(dimension));
+    let (moved, density) = job.guide.map_or((drawn, 1.0), |guide| guide.move_numbers(drawn));
+    let Start { ray, flux } = emitter.emit(moved);
+    let flux = flux / density;
     let mut flight = Flight {
         job,
         numbers,

@@ -214,6 +214,12 @@ impl<'d> Entry<'d> {
             .map_err(|_| self.error(format!("is {}; it must be from {least} to {most}", integer.as_str())))
     }
 
+    /// `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool, Error> {
+        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
+        Ok(*boolean)
+    }
+
     /// Three numbers.
     pub(super) fn vector(&self) -> Result<Vec3, Error> {
         self.three("3 numbers [x, y, z]")
