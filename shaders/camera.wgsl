@@ -10,8 +10,8 @@ import package::emitter::sphere::{nearest_sphere, SphereHit};
 import package::film::texels::footprint;
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
-import package::layout::camera_pass::{camera_params, film, irradiance};
-import package::layout::features::{has_dispersion, has_textures};
+import package::layout::camera_pass::{camera_params, film, irradiance, sightings, Sighting};
+import package::layout::features::{has_dispersion, has_textures, notes_sightings};
 import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::layout::scene::{
     Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
@@ -71,6 +71,8 @@ struct Path {
     unblocked: vec3<f32>,
     /// Seed of the pixel's random numbers.
     seed: u32,
+    /// What it has seen of the energy maps, but for the radiance.
+    sighting: Sighting,
 }
 
 /// Offset from the pixel's centre, drawn with the filter's density. Steps of the table are even in the angle whose cosine is
@@ -103,6 +105,7 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.wavelength = first_wavelength();
     path.goes_on = true;
     path.seed = seed;
+    path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
     return path;
 }
 
@@ -210,6 +213,19 @@ fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
         sent += at_wavelength(vertex.material.tint, (*path).wavelength) * at_wavelength(camera_params.ambient, (*path).wavelength);
     }
     (*path).radiance += (*path).beta * sent;
+    if notes_sightings {
+        note_sighting(path, vertex, place.texels.x);
+    }
+}
+
+/// Notes the texel beside a vertex: the path's first, or its last.
+fn note_sighting(path: ptr<function, Path>, vertex: Vertex, texel: u32) {
+    if (*path).sighting.texel == NONE {
+        (*path).sighting.texel = texel;
+        (*path).sighting.weight = dot((*path).beta * vertex.material.base * (1.0 - vertex.gloss), vec3<f32>(1.0 / (3.0 * PI)));
+    } else {
+        (*path).sighting.bounced_texel = texel;
+    }
 }
 
 /// Turns one light's point into a shadow ray, with what it brings by the base and by a rough specular lobe.
@@ -437,5 +453,10 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     if atomicAdd(&film.rays_low, rays) > 0xffffffffu - rays {
         atomicAdd(&film.rays_high, 1u);
     }
-    film.pixels[pixel.y * camera_params.width + pixel.x] += vec4<f32>(path.radiance, 1.0);
+    let index = pixel.y * camera_params.width + pixel.x;
+    film.pixels[index] += vec4<f32>(path.radiance, 1.0);
+    if notes_sightings {
+        let seen = path.sighting;
+        sightings[index] = Sighting(seen.texel, seen.bounced_texel, seen.weight, dot(path.radiance, vec3<f32>(1.0 / 3.0)));
+    }
 }

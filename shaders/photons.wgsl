@@ -4,16 +4,17 @@ import package::bsdf::base::gloss_reflectance;
 import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
 import package::emitter::emission::emit;
+import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
-import package::layout::features::{has_dispersion, has_textures};
+import package::layout::features::{has_dispersion, has_guide, has_textures};
 import package::layout::records::{load_material, load_triangle};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
-    energy, ledger, photon_params, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT, LEDGER_DISPERSION,
-    LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS,
+    energy, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
+    LEDGER_DISPERSION, LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
     Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
@@ -60,6 +61,11 @@ fn to_units(beta: vec3<f32>) -> vec3<i32> {
     return vec3<i32>(round(clamp(beta * photon_params.units_per_watt, vec3<f32>(-MAX_UNITS), vec3<f32>(MAX_UNITS))));
 }
 
+/// Whether photons are thrown away but for where they land.
+fn is_pilot() -> bool {
+    return has_guide && photon_params.pilot != 0u;
+}
+
 /// The photon at a place in this block.
 fn start_photon(place: u32) -> Photon {
     var index = photon_params.first_photon + place;
@@ -72,9 +78,16 @@ fn start_photon(place: u32) -> Photon {
         }
     }
     let numbers = sobol_5(index, photon_params.seed);
-    let emission = emit(numbers.first);
+    var guided = GuidedNumbers(numbers.first, 1.0, vec2<u32>(0u));
+    if has_guide {
+        guided = guide_numbers(numbers.first);
+    }
+    if is_pilot() {
+        landings[index] = Landing(NONE, 0.0, guided.cells.x, guided.cells.y);
+    }
+    let emission = emit(guided.numbers);
     let wavelength = first_wavelength();
-    let beta = at_wavelength(emission.flux * photon_params.flux_factor, wavelength);
+    let beta = at_wavelength(emission.flux * (photon_params.flux_factor / guided.density), wavelength);
     let units = to_units(beta);
     accounts[LEDGER_EMITTED] += units;
     return Photon(
@@ -102,9 +115,15 @@ fn take_wavelength(photon: ptr<function, Photon>) {
     set_flux(photon, at_wavelength((*photon).beta, drawn.wavelength) * drawn.weight, LEDGER_DISPERSION);
 }
 
-/// Adds flux to the four texels around a hit; their integers sum to `units` exactly.
-fn deposit(hit: Hit, object: u32, front: bool, units: vec3<i32>) {
+/// Adds a photon's flux to the four texels around a hit; their integers sum to its units exactly.
+fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
     let place = footprint(hit, object, front);
+    if is_pilot() {
+        landings[(*photon).index].texel = place.texels.x;
+        landings[(*photon).index].flux = dot(abs((*photon).beta), vec3<f32>(1.0 / 3.0));
+        return;
+    }
+    let units = (*photon).units;
     for (var channel = 0u; channel < 3u; channel++) {
         let total = units[channel];
         var shares = vec4<i32>(round(f32(total) * place.weights));
@@ -138,7 +157,7 @@ fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, point: SurfacePoin
         let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
         change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         accounts[LEDGER_DEPOSITED] += (*photon).units;
-        deposit(hit, object, point.front, (*photon).units);
+        deposit(photon, hit, object, point.front);
     }
 }
 
@@ -282,9 +301,14 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             continue;
         }
         in_flight = meet_surface(&photon, hit);
+        if is_pilot() && in_flight {
+            landings[photon.index].texel = LOST;
+        }
     }
     if !finished {
         atomicAdd(&ledger.unfinished, 1u);
     }
-    close_accounts(rays);
+    if !is_pilot() {
+        close_accounts(rays);
+    }
 }

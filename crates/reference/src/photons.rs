@@ -3,6 +3,7 @@
 mod deposit;
 mod emission;
 mod flight;
+mod guide;
 mod ledger;
 
 use std::ops::Range;
@@ -15,6 +16,7 @@ use crate::geometry::World;
 pub use self::deposit::{Landing, MapLayout};
 pub use self::emission::{AimDisc, Emission};
 pub use self::flight::{End, Event, PhotonPath, Vertex};
+pub use self::guide::{Guide, GuideTable};
 pub use self::ledger::Ledger;
 
 use self::emission::Emitter;
@@ -35,6 +37,8 @@ pub struct PhotonJob<'a> {
     pub light: usize,
     /// How they leave the light.
     pub emission: Emission<'a>,
+    /// How their emission numbers are moved, if at all.
+    pub guide: Option<&'a Guide>,
     /// Seed of their random numbers.
     pub seed: u32,
     /// Their indices.

@@ -126,7 +126,8 @@ fn under_a_lens(lens: Mesh) -> (f64, f64, f64) {
         [AimDisc::around(&world.light_sphere(0).expect("a sphere"), &caster).expect("the lens is far from the light")];
     let photons = 1 << 19;
     let emission = Emission::Aimed(&discs);
-    let job = PhotonJob { world: &world, maps: &[None, None], light: 0, emission, seed: 1, photons: 0..photons };
+    let job =
+        PhotonJob { world: &world, maps: &[None, None], light: 0, emission, guide: None, seed: 1, photons: 0..photons };
     let by_photons = trace(&job).ledger.deposited.x / (f64::from(photons) * 0.36);
 
     let points = 16;

@@ -128,7 +128,7 @@ fn deviations(scene: &Scene, photons: u32) -> Vec<(f64, f64)> {
     let world = World::new(scene);
     let middle_of_face = Sphere { center: DVec3::new(-0.5, 0.5 * 3f64.sqrt(), 0.0), radius: 0.1 };
     let emission = Emission::Toward(std::slice::from_ref(&middle_of_face));
-    let job = PhotonJob { world: &world, maps: &[None], light: 0, emission, seed: 1, photons: 0..photons };
+    let job = PhotonJob { world: &world, maps: &[None], light: 0, emission, guide: None, seed: 1, photons: 0..photons };
     (0..photons)
         .filter_map(|photon| {
             let path = trace_one(&job, photon);
@@ -197,6 +197,7 @@ fn ledger_closes_with_dispersion_which_is_zero_in_the_mean() {
         maps: &maps,
         light: 0,
         emission: Emission::Aimed(&discs),
+        guide: None,
         seed: 1,
         photons: 0..count,
     };
@@ -240,7 +241,8 @@ fn photons_bring_what_light_tracing_finds_behind_a_dispersive_ball() {
     let traced = irradiance_on(&world, &floor_region(1), Some(&around_the_ball()), 1_000_000, 3).via_casters[0];
     let (casters, photons) = ([around_the_ball()], 1 << 18);
     let emission = Emission::Toward(&casters);
-    let job = PhotonJob { world: &world, maps: &[None, None], light: 0, emission, seed: 1, photons: 0..photons };
+    let job =
+        PhotonJob { world: &world, maps: &[None, None], light: 0, emission, guide: None, seed: 1, photons: 0..photons };
     let deposited = trace(&job).ledger.deposited / (f64::from(photons) * 0.36);
     assert_agree(&traced, &exactly(deposited), 0.02, 0.003, "traced from the light");
 }
@@ -310,7 +312,8 @@ fn scenes_without_dispersion_have_no_wavelengths() {
     let world = World::new(&scene);
     assert!(!world.has_dispersion() && world.spectrum() == Spectrum::Whole);
     let emission = Emission::Unaimed;
-    let job = PhotonJob { world: &world, maps: &[None, None], light: 0, emission, seed: 1, photons: 0..10_000 };
+    let job =
+        PhotonJob { world: &world, maps: &[None, None], light: 0, emission, guide: None, seed: 1, photons: 0..10_000 };
     assert!((0..10_000).all(|photon| trace_one(&job, photon).spectrum == Spectrum::Whole));
     assert_eq!(trace(&job).ledger.dispersion, DVec3::ZERO);
 }

@@ -127,7 +127,8 @@ fn by_photons(world: &World) -> f64 {
     let mut maps = vec![None; world.scene().objects.len()];
     maps[0] = Some(MapLayout { width: 2, height: 2, layers: 1, corners });
     let emission = Emission::Toward(&casters);
-    let result = trace(&PhotonJob { world, maps: &maps, light: 0, emission, seed: 1, photons: 0..photons });
+    let result =
+        trace(&PhotonJob { world, maps: &maps, light: 0, emission, guide: None, seed: 1, photons: 0..photons });
     let error = (result.ledger.accounted() - result.ledger.emitted).abs().max_element() / result.ledger.emitted.x;
     assert!(error < 1e-11, "the ledger misses {error}");
     result.maps[0].iter().sum::<DVec3>().x / (f64::from(photons) * 0.36)

@@ -14,7 +14,7 @@ use shapes::{absorbing_glass, ball, block, diffuse, floor, glass, light, scene, 
 const DOWN: DVec3 = DVec3::NEG_Y;
 
 fn job<'a>(world: &'a World<'a>, emission: Emission<'a>, count: u32) -> PhotonJob<'a> {
-    PhotonJob { world, maps: &[], light: 0, emission, seed: 1, photons: 0..count }
+    PhotonJob { world, maps: &[], light: 0, emission, guide: None, seed: 1, photons: 0..count }
 }
 
 fn trace_without_maps(world: &World, emission: Emission, count: u32) -> Ledger {

@@ -1,7 +1,7 @@
 //! Phase 2: samples of the picture.
 
-use diacaustic_scene::Scene;
-use diacaustic_shaders::{CAMERA, CameraParams, TILE_SIZE};
+use diacaustic_scene::{RenderSettings, Scene};
+use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
 
 use crate::{
     Error, Film,
@@ -15,8 +15,13 @@ use crate::{
 
 /// The bindings of `shaders/layout/camera_pass.wgsl`.
 const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 2] = [Binding::Texels, Binding::ReadWrite];
+const OUTPUTS: [Binding; 3] = [Binding::Texels, Binding::ReadWrite, Binding::ReadWrite];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
+const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
+/// Paths along each side of the picture that note what they see.
+const SIGHTINGS_SIDE: u32 = 128;
+/// The stream of these paths' seeds.
+const SIGHTINGS_SEED_STREAM: u32 = 4;
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
 
@@ -62,17 +67,43 @@ impl Samples {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
+        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
             template: template(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
-            outputs_group: gpu.bind_resources(
-                &pass.outputs_layout,
-                vec![wgpu::BindingResource::TextureView(&maps.irradiance), film.as_entire_binding()],
-            ),
+            outputs_group: outputs_group(gpu, pass, maps, &film, &no_sightings),
             params,
             film,
         })
+    }
+
+    /// What camera paths spread over the picture see of the energy maps, which are empty yet. Blocks.
+    pub fn sightings(
+        &self,
+        gpu: &Gpu,
+        pass: &mut CameraPass,
+        features: Features,
+        scene_group: &wgpu::BindGroup,
+        settings: &RenderSettings,
+        maps: &EnergyMaps,
+    ) -> Result<Vec<Sighting>, Error> {
+        let params = CameraParams {
+            width: SIGHTINGS_SIDE,
+            height: SIGHTINGS_SIDE,
+            max_bounces: settings.max_bounces.min(1),
+            seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
+            ..self.template
+        };
+        let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
+        let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
+        let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
+        let outputs = outputs_group(gpu, pass, maps, &film, &sightings);
+        let pipeline = pass.pipelines.get(gpu, features.with_sightings());
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        let tiles = SIGHTINGS_SIDE / TILE_SIZE;
+        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
+        gpu.read(&sightings, 0..paths)
     }
 
     /// Submits one sample of every pixel.
@@ -101,6 +132,18 @@ impl Samples {
         }
         Ok(wide([words[0], words[1]]))
     }
+}
+
+fn outputs_group(
+    gpu: &Gpu,
+    pass: &CameraPass,
+    maps: &EnergyMaps,
+    film: &wgpu::Buffer,
+    sightings: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
+    let resources = vec![irradiance, film.as_entire_binding(), sightings.as_entire_binding()];
+    gpu.bind_resources(&pass.outputs_layout, resources)
 }
 
 fn template(scene: &Scene, lights: &Lights) -> CameraParams {

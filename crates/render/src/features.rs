@@ -30,6 +30,10 @@ pub(crate) struct Features {
     dispersion: bool,
     /// The kind of light that emits photons.
     photon_light_kind: u32,
+    /// Whether a guide moves photons.
+    guide: bool,
+    /// Whether camera paths note which texels they see.
+    sightings: bool,
 }
 
 impl Features {
@@ -47,13 +51,20 @@ impl Features {
             holes: scene.materials.iter().any(Material::has_holes),
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
+            guide: false,
+            sightings: false,
         }
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
-    pub fn for_photons_of(self, kind: u32) -> Self {
+    pub fn for_photons_of(self, kind: u32, guide: bool) -> Self {
         let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
-        Self { gloss, conductors, textures, holes, dispersion, photon_light_kind: kind, ..Self::default() }
+        Self { gloss, conductors, textures, holes, dispersion, photon_light_kind: kind, guide, ..Self::default() }
+    }
+
+    /// The same for camera paths that note what they see of the energy maps.
+    pub fn with_sightings(self) -> Self {
+        Self { sightings: true, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -69,6 +80,8 @@ impl Features {
             ("has_holes", f64::from(self.holes)),
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
+            ("has_guide", f64::from(self.guide)),
+            ("notes_sightings", f64::from(self.sightings)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }

@@ -1,178 +1,137 @@
-//! Where photons are sent: what each light aims at, and the order of a block's photons.
+//! Guides: how emission numbers are moved to where photons matter; docs/photon-paths.md, "Guide".
 
-use std::f32::consts::{PI, TAU};
+use crate::aim::Emission;
+use diacaustic_shaders::light_kind;
 
-use diacaustic_shaders::{AimTarget, MAX_AIM_TARGETS, light_kind};
-use diacaustic_surface::{BoundingSphere, merge_spheres};
-use glam::Vec3;
+/// Parts into which a table's bounds divide [0, 1): as fine as emission numbers are.
+const QUANTA: f64 = 16_777_216.0;
 
-use crate::lights::Emitter;
-
-/// How a light emits its photons; docs/photon-paths.md, "Emission". At most [`MAX_AIM_TARGETS`] targets.
+/// A light's guide: one table for its emission numbers u₀ and u₁, and one for u₂ and u₃.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Emission {
-    /// A sphere, toward discs that every ray from it to a caster crosses.
-    Aimed(Vec<AimTarget>),
-    /// A sphere, in every direction: a caster is too near for discs to pay.
-    Unaimed,
-    /// Any other light, toward or across bounding spheres of casters.
-    Toward(Vec<AimTarget>),
+pub struct Guide {
+    /// Moves u₀ and u₁: where the light aims.
+    pub aim: GuideTable,
+    /// Moves u₂ and u₃: where on the light a photon starts, or from which part of the sky.
+    pub place: GuideTable,
 }
 
-/// The nearest that a caster's bounding sphere may come, in sums of radii, for a sphere to aim at it.
-const NEAREST_AIM: f32 = 1.05;
+/// A piecewise constant density over the unit square, in cells of equal size, and the map of the square to itself that yields it: first
+/// along x by the columns' marginal distribution, then along y by the distribution within the column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GuideTable {
+    /// Cells along x.
+    pub columns: usize,
+    /// Cells along y.
+    pub rows: usize,
+    /// Bounds 0 = b₀ < b₁ < … < 1: column k takes what lies in [b_k, b_(k+1)). Multiples of 2⁻²⁴.
+    pub column_bounds: Vec<f32>,
+    /// For each column, `rows` + 1 bounds of the same kind.
+    pub row_bounds: Vec<f32>,
+}
 
-impl Emission {
-    /// How a light emits in the presence of `casters`; none if there are none.
-    pub(crate) fn toward(emitter: &Emitter, casters: &[BoundingSphere]) -> Option<Self> {
-        let spheres = merge_spheres(casters.to_vec(), MAX_AIM_TARGETS as usize);
-        if spheres.is_empty() {
-            return None;
-        }
-        let Some(light) = emitter.bounds.filter(|_| emitter.kind() == light_kind::SPHERE) else {
-            let target = |sphere: &BoundingSphere| AimTarget {
-                center: sphere.center.into(),
-                radius: sphere.radius,
-                ..AimTarget::default()
-            };
-            return Some(Self::Toward(spheres.iter().map(target).collect()));
+impl Guide {
+    /// The guide that moves nothing, with the cells in which a pilot of this light counts.
+    pub(crate) fn even(kind: u32, emission: &Emission) -> Self {
+        // Each target has a part of the columns of its own.
+        let targets = emission.targets().len().max(1);
+        let side = match targets {
+            1 => 64,
+            2..=4 => 32,
+            _ => 16,
         };
-        let near = |s: &BoundingSphere| s.center.distance(light.center) < NEAREST_AIM * (s.radius + light.radius);
-        if spheres.iter().any(near) {
-            return Some(Self::Unaimed);
-        }
-        Some(Self::Aimed(spheres.iter().map(|sphere| aim_disc(&light, sphere)).collect()))
+        // Where a photon starts on a light that aims, or in a sun's disc, says little of where it goes.
+        let place_side = match (kind, emission) {
+            (light_kind::SURFACE | light_kind::ENVIRONMENT, _) | (_, Emission::Unaimed) => 16,
+            _ => 1,
+        };
+        Self { aim: GuideTable::even(targets * side, side), place: GuideTable::even(place_side, place_side) }
     }
 
-    /// What the light aims at.
-    pub fn targets(&self) -> &[AimTarget] {
-        match self {
-            Self::Aimed(targets) | Self::Toward(targets) => targets,
-            Self::Unaimed => &[],
-        }
+    /// The least density of any photon; 1 on average.
+    pub fn least_density(&self) -> f64 {
+        self.aim.least_density() * self.place.least_density()
     }
 
-    /// The most flux that one photon carries, W, for a share 1 of all photons.
-    pub(crate) fn largest_photon(&self, emitter: &Emitter) -> f32 {
-        let count = self.targets().len() as f32;
-        let widest = |one: &dyn Fn(&AimTarget) -> f32| self.targets().iter().map(one).fold(0.0, f32::max);
-        match (self, emitter.bounds) {
-            (Self::Unaimed, _) => emitter.flux.max_element(),
-            (Self::Aimed(_), Some(light)) => {
-                let one = |disc: &AimTarget| {
-                    let distance = Vec3::from(disc.center).distance(light.center);
-                    PI * disc.radius * disc.radius * TAU * cone_height(light.radius / distance)
-                };
-                emitter.peak * widest(&one) * count
-            }
-            (Self::Toward(_), Some(light)) => {
-                let one = |sphere: &AimTarget| {
-                    let distance = Vec3::from(sphere.center).distance(light.center) - light.radius;
-                    TAU * if distance <= sphere.radius { 2.0 } else { cone_height(sphere.radius / distance) }
-                };
-                emitter.peak * widest(&one) * count
-            }
-            (Self::Aimed(_) | Self::Toward(_), None) => {
-                emitter.peak * widest(&|sphere: &AimTarget| PI * sphere.radius * sphere.radius) * count
-            }
-        }
+    /// The entries of both tables as the kernel reads them.
+    pub(crate) fn records(&self) -> Vec<[u32; 4]> {
+        self.aim.records().into_iter().chain(self.place.records()).collect()
     }
 }
 
-/// 1 − cos of the cone of this sine, without cancellation.
-fn cone_height(sine: f32) -> f32 {
-    let sin2 = sine * sine;
-    sin2 / (1.0 + (1.0 - sin2).max(0.0).sqrt())
-}
-
-/// The disc through a sphere's centre that covers the inner tangents of light and sphere.
-fn aim_disc(light: &BoundingSphere, sphere: &BoundingSphere) -> AimTarget {
-    let toward = sphere.center - light.center;
-    let distance = toward.length();
-    let sin = (light.radius + sphere.radius) / distance;
-    AimTarget {
-        center: sphere.center.into(),
-        // The factor covers the rounding of centre and radius.
-        radius: sphere.radius / (1.0 - sin * sin).sqrt() * 1.00001,
-        axis: (toward / distance).into(),
-        padding: 0,
+impl GuideTable {
+    /// The table that moves nothing.
+    pub(crate) fn even(columns: usize, rows: usize) -> Self {
+        Self::from_weights(columns, rows, &vec![1.0; columns * rows])
     }
-}
 
-/// The longest block of photons, as a power of two.
-pub(crate) const LONGEST_BLOCK: u32 = 18;
-/// The shortest block whose photons are put in order, as a power of two.
-const SHORTEST_ORDERED_BLOCK: u32 = 8;
-
-/// A run of one light's photons that one dispatch takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Block {
-    pub first: u32,
-    pub count: u32,
-    /// Columns of the matrix from places to photons, if they are put in order.
-    pub order: Option<[u32; 32]>,
-}
-
-/// Cuts photons `first..end` into blocks: aligned powers of two, but for short rests.
-pub(crate) fn blocks(first: u32, end: u32) -> Vec<Block> {
-    let mut list = Vec::new();
-    let mut at = u64::from(first);
-    let end = u64::from(end);
-    while at < end {
-        let aligned = if at == 0 { LONGEST_BLOCK } else { at.trailing_zeros().min(LONGEST_BLOCK) };
-        let fitting = (end - at).ilog2();
-        let bits = aligned.min(fitting);
-        if bits >= SHORTEST_ORDERED_BLOCK {
-            list.push(Block { first: at as u32, count: 1 << bits, order: Some(photon_order(bits)) });
-            at += 1 << bits;
-        } else {
-            // Up to the next start of a block worth ordering.
-            let next = (at + 1).next_multiple_of(1 << SHORTEST_ORDERED_BLOCK).min(end);
-            list.push(Block { first: at as u32, count: (next - at) as u32, order: None });
-            at = next;
+    /// The table whose density is in proportion to the weights of the cells, column by column, all greater than 0.
+    pub(crate) fn from_weights(columns: usize, rows: usize, weights: &[f64]) -> Self {
+        let of_columns: Vec<f64> = weights.chunks_exact(rows).map(|column| column.iter().sum()).collect();
+        Self {
+            columns,
+            rows,
+            column_bounds: bounds(&of_columns),
+            row_bounds: weights.chunks_exact(rows).flat_map(bounds).collect(),
         }
     }
+
+    /// Density in a cell, column by column; 1 on average.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn density(&self, cell: usize) -> f64 {
+        let (column, row) = (cell / self.rows, cell % self.rows);
+        let first = column * (self.rows + 1) + row;
+        let width = |bounds: &[f32], at: usize| f64::from(bounds[at + 1]) - f64::from(bounds[at]);
+        width(&self.column_bounds, column) * width(&self.row_bounds, first) * (self.columns * self.rows) as f64
+    }
+
+    /// The number of cells.
+    pub fn cells(&self) -> usize {
+        self.columns * self.rows
+    }
+
+    fn least_density(&self) -> f64 {
+        (0..self.cells()).map(|cell| self.density(cell)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The entries of the columns, then of the rows of every column.
+    fn records(&self) -> Vec<[u32; 4]> {
+        let rows = self.row_bounds.chunks_exact(self.rows + 1).flat_map(entries);
+        entries(&self.column_bounds).into_iter().chain(rows).collect()
+    }
+}
+
+/// For each of n intervals its bounds, as bits, and for interval k the one that k/n lies in, where the search for numbers from there on begins.
+fn entries(bounds: &[f32]) -> Vec<[u32; 4]> {
+    let count = bounds.len() - 1;
+    let mut begin = 0;
+    let entry = |k: usize| {
+        // A little less than k, for the kernel rounds when it finds the k of a number.
+        while f64::from(bounds[begin + 1]) * count as f64 <= k as f64 - 0.001 {
+            begin += 1;
+        }
+        [bounds[k].to_bits(), bounds[k + 1].to_bits(), begin as u32, 0]
+    };
+    (0..count).map(entry).collect()
+}
+
+/// Bounds of intervals in proportion to weights, of one quantum at least.
+fn bounds(weights: &[f64]) -> Vec<f32> {
+    let total: f64 = weights.iter().sum();
+    let last = weights.len();
+    let (mut sum, mut before) = (0.0, 0.0f64);
+    let mut list = vec![0.0];
+    for (index, weight) in weights.iter().enumerate() {
+        sum += weight;
+        // Each interval after this one needs a quantum too.
+        let room = QUANTA - (last - 1 - index) as f64;
+        before = (sum / total * QUANTA).round().max(before + 1.0).min(room);
+        list.push((before / QUANTA) as f32);
+    }
+    // Rounding must not leave a gap at the end.
+    list[last] = 1.0;
     list
-}
-
-/// The matrix over GF(2) that takes a place in a block of 2^`bits` photons to a photon, so that the places follow a Z-order
-/// curve over the square of the first two emission numbers. Column b belongs to bit b of the place.
-///
-/// The upper halves of a net's two coordinates are a one-to-one linear function of the index (Niederreiter 1992), which Owen
-/// scrambling permutes within its dyadic squares; this is its inverse.
-fn photon_order(bits: u32) -> [u32; 32] {
-    // Row r: which index bits make the r-th digit of the Z-order curve, most significant first; beside it, the identity.
-    let mut rows: Vec<(u64, u64)> = (0..bits)
-        .map(|digit| {
-            let row = (0..bits).fold(0u64, |row, bit| {
-                let numbers = [1u32 << (31 - bit), pascal_column(bit)];
-                let set = numbers[digit as usize % 2] >> (31 - digit / 2) & 1;
-                row | u64::from(set) << bit
-            });
-            (row, 1u64 << (bits - 1 - digit))
-        })
-        .collect();
-    for column in 0..bits as usize {
-        let pivot = (column..bits as usize)
-            .find(|&row| rows[row].0 >> column & 1 == 1)
-            .expect("the first two Sobol' dimensions are a (0, 2)-sequence");
-        rows.swap(column, pivot);
-        let source = rows[column];
-        for (row, entry) in rows.iter_mut().enumerate() {
-            if row != column && entry.0 >> column & 1 == 1 {
-                *entry = (entry.0 ^ source.0, entry.1 ^ source.1);
-            }
-        }
-    }
-    // Row i now says which place bits make index bit i.
-    std::array::from_fn(|place| {
-        rows.iter().enumerate().fold(0, |column, (index, row)| column | ((row.1 >> place & 1) as u32) << index)
-    })
-}
-
-/// Direction number `bit` of the second Sobol' dimension.
-fn pascal_column(bit: u32) -> u32 {
-    (0..bit).fold(1 << 31, |v: u32, _| v ^ v >> 1)
 }
 
 #[cfg(test)]
@@ -180,35 +139,35 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_cover_every_photon_once() {
-        for (first, end) in [(0, 1_000_000), (3, 700_001), (5, 6), (0, 256), (1 << 20, u32::MAX), (7, 7)] {
-            let mut at = first;
-            for block in blocks(first, end) {
-                assert_eq!(block.first, at);
-                assert!(block.count > 0 && block.count <= 1 << LONGEST_BLOCK);
-                at += block.count;
-            }
-            assert_eq!(at, end);
+    fn bounds_rise_from_0_to_1_whatever_the_weights() {
+        for weights in [vec![1.0; 3], vec![1e-30, 1.0, 1e-30, 1e-30], vec![1.0, 1e-30], vec![5.0]] {
+            let bounds = bounds(&weights);
+            assert_eq!((bounds[0], bounds[weights.len()]), (0.0, 1.0), "{weights:?}");
+            assert!(bounds.windows(2).all(|pair| pair[0] < pair[1]), "{weights:?}: {bounds:?}");
+            assert!(bounds.iter().all(|&bound| f64::from(bound) * QUANTA % 1.0 == 0.0));
         }
     }
 
     #[test]
-    fn order_is_a_permutation_along_the_first_coordinate() {
-        for bits in [8, 9, 13] {
-            let order = photon_order(bits);
-            let photons: Vec<u32> = (0..1u32 << bits)
-                .map(|place| {
-                    (0..bits).fold(0, |index, bit| index ^ if place >> bit & 1 == 1 { order[bit as usize] } else { 0 })
-                })
-                .collect();
-            let mut sorted = photons.clone();
-            sorted.sort_unstable();
-            assert!(sorted.iter().copied().eq(0..1 << bits));
-            // The first half of the places has the first coordinate below one half, the next digit halves the second.
-            assert!(photons[..photons.len() / 2].iter().all(|index| index.reverse_bits() < 1 << 31));
-            let second =
-                |index: u32| (0..32).fold(0, |y, bit| y ^ if index >> bit & 1 == 1 { pascal_column(bit) } else { 0 });
-            assert!(photons[..photons.len() / 4].iter().all(|&index| second(index) < 1 << 31));
+    fn densities_follow_the_weights_and_average_to_1() {
+        let weights = [1.0, 2.0, 3.0, 4.0, 0.5, 1.5];
+        let table = GuideTable::from_weights(2, 3, &weights);
+        for (cell, weight) in weights.iter().enumerate() {
+            assert!((table.density(cell) - weight * 6.0 / 12.0).abs() < 1e-6);
         }
+        assert!((0..6).map(|cell| table.density(cell)).sum::<f64>() / 6.0 - 1.0 < 1e-12);
+        assert!((table.least_density() - 0.25).abs() < 1e-6);
+        assert_eq!(table.records().len(), 2 + 6);
+        // Bounds 0, ½, 1 and, of the first column, 0, 1/6, ½, 1: ½ begins the second column, but for rounding; a third lies in the second
+        // row, two thirds in the third.
+        let begin: Vec<u32> = table.records().iter().map(|entry| entry[2]).collect();
+        assert_eq!(begin[..5], [0, 0, 0, 1, 2]);
+    }
+
+    #[test]
+    fn an_even_table_moves_nothing() {
+        let table = GuideTable::even(64, 32);
+        assert_eq!(table.least_density(), 1.0);
+        assert_eq!(table.column_bounds[17], 17.0 / 64.0);
     }
 }

@@ -3,24 +3,29 @@
 use std::ops::Range;
 
 use diacaustic_scene::RenderSettings;
-use diacaustic_shaders::{AimTarget, MAX_AIM_TARGETS, PHOTONS, PhotonParams, WORKGROUP_SIZE, ledger};
+use diacaustic_shaders::{
+    AimTarget, LOST, Landing, MAX_AIM_TARGETS, PHOTONS, PhotonParams, Sighting, WORKGROUP_SIZE, ledger,
+};
 use diacaustic_surface::BoundingSphere;
 use glam::DVec3;
 
 use crate::{
-    Error, Ledger, LoopLimit,
+    Error, Guide, Ledger, LoopLimit, PilotReport,
+    aim::{Block, Emission, blocks},
     energy_map::EnergyMaps,
     features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose, wide},
-    guide::{Block, Emission, blocks},
     lights::{Emitter, Lights},
+    pilot::{Pilot, PilotRound},
     random::combine,
     renderer::MOST_IN_FLIGHT,
 };
 
 /// The bindings of `shaders/layout/photon_pass.wgsl`.
-const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 2] = [Binding::ReadWrite; 2];
+const PARAMS: [Binding; 2] = [Binding::Uniform, Binding::Records];
+const OUTPUTS: [Binding; 3] = [Binding::ReadWrite; 3];
+const GUIDE: Purpose = Purpose { what: "a light's guide", remedy: "set guiding = false" };
+const LANDINGS: Purpose = Purpose { what: "the pilot's photons", remedy: "set guiding = false" };
 const LEDGER: Purpose = Purpose { what: "the lights' ledgers", remedy: "use fewer lights" };
 /// Words of the ledger before its accounts: rays (low, high), unfinished, deposits (low, high).
 const COUNTERS: u64 = 5;
@@ -30,6 +35,12 @@ const LIGHT_WORDS: usize = ledger::ACCOUNTS as usize * 3 * 2;
 const LARGEST_PHOTON_UNITS: f32 = 16_777_216.0;
 /// The stream of the photon pass's seeds; docs/photon-paths.md.
 const SEED_STREAM: u32 = 1;
+/// The stream of the pilots' seeds.
+const PILOT_SEED_STREAM: u32 = 3;
+/// Rounds of a pilot: each flies by the guide that follows from those before it.
+const PILOT_ROUNDS: usize = 2;
+/// Photons in a round of a light's pilot, as powers of two: at most; at least, where many lights share the photons of four.
+const PILOT_ROUND: std::ops::RangeInclusive<u32> = 10..=13;
 
 /// The pipeline of the photon pass.
 #[derive(Debug)]
@@ -56,6 +67,9 @@ struct PhotonLight {
     /// The first of its turns.
     first_turn: u64,
     pipeline: wgpu::ComputePipeline,
+    guide: Guide,
+    /// Params and guide.
+    params_group: wgpu::BindGroup,
 }
 
 impl PhotonLight {
@@ -81,11 +95,13 @@ pub(crate) struct Photons {
     template: PhotonParams,
     seed: u32,
     photons_per_invocation: u32,
+    /// Whether a guide moves the emission numbers.
+    guided: bool,
     /// Units of the fixed-point sums in a watt: a power of two, so that scaling is exact.
     pub units_per_watt: f32,
+    greatest_weight: f32,
     params: wgpu::Buffer,
     pub ledger: wgpu::Buffer,
-    params_group: wgpu::BindGroup,
     outputs_group: wgpu::BindGroup,
 }
 
@@ -109,18 +125,30 @@ impl Photons {
         maps: &EnergyMaps,
         loop_limit: LoopLimit,
     ) -> Result<Self, Error> {
-        let pipeline = |emitter: &Emitter| pass.pipelines.get(gpu, scene.features.for_photons_of(emitter.kind()));
-        let (photon_lights, turns) = photon_lights(scene.lights, scene.casters, pipeline);
-        let largest = photon_lights
-            .iter()
-            .map(|light| light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns))
-            .fold(f32::MIN_POSITIVE, f32::max);
-        let units_per_watt = (LARGEST_PHOTON_UNITS / (largest * scene.greatest_weight)).log2().floor().exp2();
+        let guided = scene.settings.guiding;
         let params = gpu.uniform::<PhotonParams>("photons");
+        let mut lights = Vec::new();
+        let mut turns = 0;
+        for emitter in &scene.lights.emitters {
+            let Some(emission) = Emission::toward(emitter, scene.casters) else { continue };
+            let features = scene.features.for_photons_of(emitter.kind(), guided);
+            let guide = Guide::even(emitter.kind(), &emission);
+            lights.push(PhotonLight {
+                emitter: emitter.clone(),
+                emission,
+                first_turn: turns,
+                pipeline: pass.pipelines.get(gpu, features),
+                params_group: guide_group(gpu, &pass.params_layout, &params, &guide)?,
+                guide,
+            });
+            turns += u64::from(emitter.photon_share);
+        }
         let words = COUNTERS + (scene.lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
+        let no_landings = gpu.zeroed(LANDINGS, size_of::<Landing>() as u64)?;
+        let units_per_watt = units_per_watt(&lights, turns, scene.greatest_weight);
         Ok(Self {
-            lights: photon_lights,
+            lights,
             turns,
             account_count: scene.lights.account_count,
             template: PhotonParams {
@@ -132,10 +160,11 @@ impl Photons {
                 ..Default::default()
             },
             seed: scene.settings.seed,
+            greatest_weight: scene.greatest_weight,
             photons_per_invocation: loop_limit.photons_per_invocation(scene.settings.max_depth),
+            guided,
             units_per_watt,
-            params_group: gpu.bind(&pass.params_layout, &[&params]),
-            outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger]),
+            outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger, &no_landings]),
             params,
             ledger,
         })
@@ -151,6 +180,51 @@ impl Photons {
         self.lights.iter().find(|light| light.emitter.number == number).map(|light| &light.emission)
     }
 
+    /// How a light's emission numbers are moved; none if it emits nothing, or photons are not guided.
+    pub fn guide(&self, number: usize) -> Option<&Guide> {
+        let light = self.lights.iter().find(|light| light.emitter.number == number);
+        light.filter(|_| self.guided).map(|light| &light.guide)
+    }
+
+    /// Flies a pilot of every light, and makes the guides that the photons follow from now on. Blocks.
+    pub fn learn(
+        &mut self,
+        gpu: &Gpu,
+        pass: &PhotonPass,
+        scene_group: &wgpu::BindGroup,
+        maps: &EnergyMaps,
+        sightings: &[Sighting],
+    ) -> Result<PilotReport, Error> {
+        let count = 1u32 << pilot_round(self.lights.len());
+        let landings = gpu.zeroed(LANDINGS, u64::from(count) * PILOT_ROUNDS as u64 * size_of::<Landing>() as u64)?;
+        let outputs = gpu.bind(&pass.outputs_layout, &[&maps.sums, &self.ledger, &landings]);
+        let mut pilot = Pilot::new(&maps.placements, sightings);
+        let mut flights = vec![Vec::new(); self.lights.len()];
+        for round in 0..PILOT_ROUNDS as u32 {
+            let photons = round * count..(round + 1) * count;
+            for (light, rounds) in self.lights.iter().zip(&mut flights) {
+                for block in blocks(photons.start, photons.end) {
+                    self.submit(gpu, scene_group, &outputs, light, &self.pilot_params(light, &block));
+                }
+                let landed = gpu.read(&landings, photons.start.into()..photons.end.into())?;
+                rounds.push(PilotRound { guide: light.guide.clone(), landings: landed });
+            }
+            pilot.measure_flux(&flights);
+            let error_weights = pilot.error_weights();
+            for (light, rounds) in self.lights.iter_mut().zip(&flights) {
+                light.guide = pilot.learn(rounds, &error_weights);
+                light.params_group = guide_group(gpu, &pass.params_layout, &self.params, &light.guide)?;
+            }
+        }
+        self.units_per_watt = units_per_watt(&self.lights, self.turns, self.greatest_weight);
+        self.template.units_per_watt = self.units_per_watt;
+        Ok(PilotReport {
+            photons: flights.iter().flatten().map(|round| round.landings.len() as u64).sum(),
+            unguided_share: unguided_share(&self.lights, &flights),
+            ..PilotReport::default()
+        })
+    }
+
     /// Submits photons `range`, which take turns over the emitting lights.
     pub fn emit(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, range: Range<u64>) -> Result<(), Error> {
         // A light's own photons are numbered with 32 bits.
@@ -162,10 +236,7 @@ impl Photons {
         let mut submitted = 0u32;
         for light in &self.lights {
             for block in blocks(light.of_first(range.start, self.turns), light.of_first(range.end, self.turns)) {
-                let lanes = block.count.div_ceil(self.photons_per_invocation);
-                gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.block_params(light, &block, lanes)));
-                let groups = [scene_group, &self.params_group, &self.outputs_group];
-                gpu.dispatch(&light.pipeline, &groups, [lanes.div_ceil(WORKGROUP_SIZE), 1]);
+                self.submit(gpu, scene_group, &self.outputs_group, light, &self.block_params(light, &block));
                 submitted += 1;
                 if submitted.is_multiple_of(MOST_IN_FLIGHT) {
                     gpu.wait()?;
@@ -175,7 +246,27 @@ impl Photons {
         Ok(())
     }
 
-    fn block_params(&self, light: &PhotonLight, block: &Block, lane_count: u32) -> PhotonParams {
+    /// Submits one block.
+    fn submit(
+        &self,
+        gpu: &Gpu,
+        scene_group: &wgpu::BindGroup,
+        outputs: &wgpu::BindGroup,
+        light: &PhotonLight,
+        params: &PhotonParams,
+    ) {
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(params));
+        let groups = [scene_group, &light.params_group, outputs];
+        gpu.dispatch(&light.pipeline, &groups, [params.lane_count.div_ceil(WORKGROUP_SIZE), 1]);
+    }
+
+    /// The params of a block of a light's pilot, whose photons carry their flux as if the light were alone.
+    fn pilot_params(&self, light: &PhotonLight, block: &Block) -> PhotonParams {
+        let seed = combine(combine(self.seed, PILOT_SEED_STREAM), light.emitter.number as u32);
+        PhotonParams { seed, pilot: 1, flux_factor: 1.0, ..self.block_params(light, block) }
+    }
+
+    fn block_params(&self, light: &PhotonLight, block: &Block) -> PhotonParams {
         let emitter = &light.emitter;
         let aimed = light.emission.targets();
         let mut targets = [AimTarget::default(); MAX_AIM_TARGETS as usize];
@@ -186,11 +277,14 @@ impl Photons {
             account: emitter.number as u32,
             first_photon: block.first,
             photon_count: block.count,
-            lane_count,
+            lane_count: block.count.div_ceil(self.photons_per_invocation),
             seed: combine(combine(self.seed, SEED_STREAM), emitter.number as u32),
             target_count: aimed.len() as u32,
             ordered: u32::from(block.order.is_some()),
             flux_factor: flux_factor(emitter, self.turns),
+            guide_columns: light.guide.aim.columns as u32,
+            guide_rows: light.guide.aim.rows as u32,
+            guide_side: light.guide.place.columns as u32,
             media: emitter.media,
             order: std::array::from_fn(|k| std::array::from_fn(|i| columns[4 * k + i])),
             targets,
@@ -237,26 +331,44 @@ fn flux_factor(emitter: &Emitter, turns: u64) -> f32 {
     turns as f32 / emitter.photon_share as f32
 }
 
-/// The lights that emit photons, with their turns, and the number of all turns.
-fn photon_lights(
-    lights: &Lights,
-    casters: &[BoundingSphere],
-    mut pipeline: impl FnMut(&Emitter) -> wgpu::ComputePipeline,
-) -> (Vec<PhotonLight>, u64) {
-    let mut turns = 0;
-    let mut list = Vec::new();
-    for emitter in &lights.emitters {
-        if let Some(emission) = Emission::toward(emitter, casters) {
-            list.push(PhotonLight {
-                emitter: emitter.clone(),
-                emission,
-                first_turn: turns,
-                pipeline: pipeline(emitter),
-            });
-            turns += u64::from(emitter.photon_share);
-        }
-    }
-    (list, turns)
+/// Units in a watt, such that the largest photon of all lights has 2²⁴, also where one wavelength multiplies it by `greatest_weight`.
+fn units_per_watt(lights: &[PhotonLight], turns: u64, greatest_weight: f32) -> f32 {
+    let largest = |light: &PhotonLight| {
+        let unguided = light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns);
+        unguided / light.guide.least_density() as f32
+    };
+    let largest = lights.iter().map(largest).fold(f32::MIN_POSITIVE, f32::max);
+    (LARGEST_PHOTON_UNITS / (largest * greatest_weight)).log2().floor().exp2()
+}
+
+/// The bind group of params and guide.
+fn guide_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    params: &wgpu::Buffer,
+    guide: &Guide,
+) -> Result<wgpu::BindGroup, Error> {
+    let texture = gpu.records(GUIDE, &guide.records())?;
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let resources = vec![params.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
+    Ok(gpu.bind_resources(layout, resources))
+}
+
+/// Photons in a round of each light's pilot, as a power of two.
+fn pilot_round(lights: usize) -> u32 {
+    let (least, most) = (*PILOT_ROUND.start(), *PILOT_ROUND.end());
+    (most + 2).saturating_sub(lights.next_power_of_two().ilog2()).clamp(least, most)
+}
+
+/// The share of all lights' photons that would reach a receiver through a caster without a guide: those of the first round.
+fn unguided_share(lights: &[PhotonLight], flights: &[Vec<PilotRound>]) -> f64 {
+    let shares = lights.iter().zip(flights).map(|(light, rounds)| {
+        let landings = &rounds[0].landings;
+        let landed = landings.iter().filter(|landing| landing.texel < LOST).count();
+        (f64::from(light.emitter.photon_share), landed as f64 / landings.len() as f64)
+    });
+    let (sum, turns) = shares.fold((0.0, 0.0), |(sum, turns), (turn, share)| (sum + turn * share, turns + turn));
+    sum / f64::max(turns, 1.0)
 }
 
 /// What the photon pass has counted.

@@ -1,6 +1,6 @@
 //! The renderer: scene in, picture and energy maps out.
 
-use std::ops::Range;
+use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_shaders::QueryHit;
@@ -8,7 +8,8 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, LightReport, LoopLimit, MapSize, RenderParams, SceneReport, Statistics,
+    Emission, EnergyMap, Error, Film, Guide, LightReport, LoopLimit, MapSize, PilotReport, RenderParams, SceneReport,
+    Statistics,
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass},
@@ -99,8 +100,8 @@ impl Renderer {
 
     /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
     ///
-    /// Compiles the kernels for what the scene makes use of, if no scene before it did the same. Blocks: seconds on a software adapter
-    /// that has not cached them.
+    /// Compiles the kernels for what the scene makes use of, if no scene before it did the same; finds by throw-away photons where others are to
+    /// be sent, unless the scene says `guiding = false`. Blocks: seconds on a software adapter that has not cached the kernels.
     ///
     /// # Errors
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
@@ -112,12 +113,13 @@ impl Renderer {
         let (triangles, bvh_nodes) = (host.triangles, host.bvh.nodes.len());
         let (bvh_time, maps_time) = (host.bvh_time, host.maps_time);
         let lights = light_reports(scene, &host.lights);
-        let on_device = self.gpu.clone().guarded(|| self.upload(scene, host))?;
+        let (on_device, pilot) = self.gpu.clone().guarded(|| self.upload(scene, host))?;
         let report = SceneReport {
             triangles,
             bvh_nodes,
             bvh_time,
             maps_time,
+            pilot,
             device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.film.size(),
             maps: map_sizes(&on_device.maps),
             photon_turns: on_device.photons.turns,
@@ -127,8 +129,8 @@ impl Renderer {
         Ok(report)
     }
 
-    /// Sends a scene to the device.
-    fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<OnDevice, Error> {
+    /// Sends a scene to the device, and flies the pilots if photons are guided.
+    fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<(OnDevice, Option<PilotReport>), Error> {
         let gpu = &self.gpu;
         let buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
         let photons_of = PhotonScene {
@@ -140,9 +142,20 @@ impl Renderer {
             around: host.around,
         };
         let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements)?;
-        Ok(OnDevice {
-            photons: Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?,
-            samples: Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?,
+        let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?;
+        let samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?;
+        let mut pilot = None;
+        if scene.settings.guiding && photons.can_emit() {
+            let start = Instant::now();
+            let group = &buffers.bind_group;
+            let sightings =
+                samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &maps)?;
+            let report = photons.learn(gpu, &self.photon_pass, group, &maps, &sightings)?;
+            pilot = Some(PilotReport { time: start.elapsed(), ..report });
+        }
+        let on_device = OnDevice {
+            photons,
+            samples,
             scene: scene.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
             buffers,
@@ -150,7 +163,8 @@ impl Renderer {
             photon_count: 0,
             sample_count: 0,
             unresolved: true,
-        })
+        };
+        Ok((on_device, pilot))
     }
 
     /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot
@@ -314,6 +328,15 @@ impl Renderer {
     /// If no scene is set.
     pub fn emission(&self, light: usize) -> Result<Option<&Emission>, Error> {
         Ok(self.scene.as_ref().ok_or(Error::NoScene)?.photons.emission(light))
+    }
+
+    /// How a light's emission numbers are moved to where photons matter, by its place in [`SceneReport::lights`]; none if it emits no photons,
+    /// the scene says `guiding = false`, or there is no such light.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn guide(&self, light: usize) -> Result<Option<&Guide>, Error> {
+        Ok(self.scene.as_ref().ok_or(Error::NoScene)?.photons.guide(light))
     }
 
     /// The layout of an object's energy map; none if it has none, or there is no such object.

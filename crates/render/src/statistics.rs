@@ -48,6 +48,17 @@ pub struct LightReport {
     pub flux: [f32; 3],
 }
 
+/// What the pilots did that found where photons matter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PilotReport {
+    /// Photons that flew and were thrown away, over every light.
+    pub photons: u64,
+    /// The share of photons that would reach a receiver through a caster without a guide, 0 to 1.
+    pub unguided_share: f64,
+    /// Time that it all took, the camera's paths among it.
+    pub time: Duration,
+}
+
 /// What setting a scene built.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneReport {
@@ -59,6 +70,8 @@ pub struct SceneReport {
     pub bvh_time: Duration,
     /// Time to lay out the maps and integrate their texels' areas.
     pub maps_time: Duration,
+    /// The pilots; none if photons are not guided.
+    pub pilot: Option<PilotReport>,
     /// Bytes of the scene, the maps and the film on the device.
     pub device_bytes: u64,
     /// The maps.

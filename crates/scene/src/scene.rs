@@ -79,6 +79,8 @@ pub struct RenderSettings {
     pub max_depth: u32,
     /// The diffuse surfaces that light meets after the first one that the camera sees: 0 for direct light and caustics alone.
     pub max_bounces: u32,
+    /// Whether photons are sent where a pilot found that they matter to the picture, and not evenly toward all casters.
+    pub guiding: bool,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// The pixel's reconstruction filter.
@@ -129,6 +131,7 @@ impl Default for RenderSettings {
             seed: 0,
             max_depth: 32,
             max_bounces: 8,
+            guiding: true,
             map_size: None,
             filter: PixelFilter::default(),
             wavelength: None,

@@ -246,6 +246,11 @@ const CASES: &[(&str, &str, &str)] = &[
     ("seed = 7", "seed = 0x100000000", "x.toml:15:8: [render]: seed is 4294967296; it must be at most 4294967295"),
     ("max_depth = 32", "max_bounces = 1001", "x.toml:16:1: render: max_bounces is 1001; it must be from 0 to 1000"),
     ("max_depth = 32", "max_depth = 1001", "x.toml:16:1: render: max_depth is 1001; it must be from 1 to 1000"),
+    (
+        "max_depth = 32",
+        "guiding = 1",
+        "x.toml:16:11: [render]: guiding: expected true or false, found the whole number 1",
+    ),
     ("map_size = 1024", "map_size = 1", "x.toml:17:1: render: map_size is 1; it must be from 2 to 8192"),
     (
         r#"filter = "box""#,

@@ -8,7 +8,6 @@ use glam::DVec3;
 use crate::geometry::{Ray, Sphere};
 use crate::lights::{cap_height, intensity_of};
 use crate::media::Media;
-use crate::random::PhotonNumbers;
 use crate::warp;
 
 use super::PhotonJob;
@@ -107,7 +106,8 @@ impl<'a> Emitter<'a> {
         self.media
     }
 
-    pub(super) fn emit(&self, numbers: &PhotonNumbers) -> Start {
+    /// The photon of four emission numbers.
+    pub(super) fn emit(&self, numbers: [f64; 4]) -> Start {
         match &self.source {
             Source::Aimed(sphere, discs) => sphere.emit_aimed(discs, numbers),
             Source::Unaimed(sphere) => sphere.emit_unaimed(numbers),
@@ -136,18 +136,18 @@ impl SphereLight {
         Self { sphere, flux: flux.as_dvec3() }
     }
 
-    fn emit_aimed(&self, discs: &[AimDisc], numbers: &PhotonNumbers) -> Start {
+    fn emit_aimed(&self, discs: &[AimDisc], numbers: [f64; 4]) -> Start {
         let count = discs.len();
-        let (chosen, u) = choose(numbers.emission(0), count);
+        let (chosen, u) = choose(numbers[0], count);
         let AimDisc { center, axis, radius } = discs[chosen];
-        let on_disc = warp::disc(u, numbers.emission(1));
+        let on_disc = warp::disc(u, numbers[1]);
         let [t1, t2] = warp::frame(axis);
         let target = center + radius * (on_disc.x * t1 + on_disc.y * t2);
 
         let to_light = self.sphere.center - target;
         let distance = to_light.length();
         let height = self.cone_height(target);
-        let toward_light = warp::cone(to_light / distance, height, numbers.emission(2), numbers.emission(3));
+        let toward_light = warp::cone(to_light / distance, height, numbers[2], numbers[3]);
         let origin = target + self.distance_to_surface(to_light, toward_light) * toward_light;
 
         let direction = -toward_light;
@@ -181,9 +181,9 @@ impl SphereLight {
         along - (self.sphere.radius * self.sphere.radius - off_axis.length_squared()).max(0.0).sqrt()
     }
 
-    fn emit_unaimed(&self, numbers: &PhotonNumbers) -> Start {
-        let n = warp::cone(DVec3::Z, 2.0, numbers.emission(2), numbers.emission(3));
-        let direction = warp::cosine_hemisphere(n, numbers.emission(0), numbers.emission(1));
+    fn emit_unaimed(&self, numbers: [f64; 4]) -> Start {
+        let n = warp::cone(DVec3::Z, 2.0, numbers[2], numbers[3]);
+        let direction = warp::cosine_hemisphere(n, numbers[0], numbers[1]);
         let origin = self.sphere.center + self.sphere.radius * n;
         Start { ray: Ray { origin, direction }, flux: self.flux }
     }
@@ -196,11 +196,11 @@ struct PointLight<'a> {
 }
 
 impl PointLight<'_> {
-    fn emit(&self, casters: &[Sphere], numbers: &PhotonNumbers) -> Start {
-        let (chosen, u) = choose(numbers.emission(0), casters.len());
+    fn emit(&self, casters: &[Sphere], numbers: [f64; 4]) -> Start {
+        let (chosen, u) = choose(numbers[0], casters.len());
         let cones: Vec<_> = casters.iter().map(|caster| self.cone_toward(caster)).collect();
         let (axis, height) = cones[chosen];
-        let direction = warp::cone(axis, height, u, numbers.emission(1)).normalize();
+        let direction = warp::cone(axis, height, u, numbers[1]).normalize();
         let hit = cones.iter().enumerate().filter(|(k, (axis, h))| *k == chosen || direction.dot(*axis) >= 1.0 - h);
         let density: f64 = hit.map(|(_, (_, h))| 1.0 / (TAU * h * casters.len() as f64)).sum();
         let ray = Ray { origin: self.position, direction };
@@ -241,15 +241,15 @@ impl DistantLight {
         }
     }
 
-    fn emit(&self, casters: &[Sphere], numbers: &PhotonNumbers) -> Start {
+    fn emit(&self, casters: &[Sphere], numbers: [f64; 4]) -> Start {
         let direction = if self.height > 0.0 {
-            warp::cone(self.direction, self.height, numbers.emission(2), numbers.emission(3)).normalize()
+            warp::cone(self.direction, self.height, numbers[2], numbers[3]).normalize()
         } else {
             self.direction
         };
-        let (chosen, u) = choose(numbers.emission(0), casters.len());
+        let (chosen, u) = choose(numbers[0], casters.len());
         let Sphere { center, radius } = casters[chosen];
-        let ([t1, t2], p) = (warp::frame(direction), warp::disc(u, numbers.emission(1)));
+        let ([t1, t2], p) = (warp::frame(direction), warp::disc(u, numbers[1]));
         let target = center + radius * (p.x * t1 + p.y * t2);
         let crossed = casters.iter().enumerate().filter(|(k, caster)| {
             *k == chosen || (caster.center - target).reject_from_normalized(direction).length() <= caster.radius

@@ -95,10 +95,12 @@ struct Flight<'a> {
 pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath {
     let numbers = PhotonNumbers::new(job.seed, job.light as u32, photon);
     let numbers = if job.world.has_dispersion() { numbers.with_wavelength() } else { numbers };
-    let Start { ray, flux } = emitter.emit(&numbers);
+    let drawn = [0, 1, 2, 3].map(|dimension| numbers.emission(dimension));
+    let (moved, density) = job.guide.map_or((drawn, 1.0), |guide| guide.move_numbers(drawn));
+    let Start { ray, flux } = emitter.emit(moved);
     let wavelength_number = numbers.wavelength();
     let spectrum = job.world.spectrum();
-    let flux = spectrum.color(flux);
+    let flux = spectrum.color(flux / density);
     let mut flight = Flight {
         job,
         numbers,
