@@ -25,3 +25,7 @@ override photon_light_kind: u32 = 0u;
 override has_guide: bool = true;
 /// Whether camera paths note which texels they see.
 override notes_sightings: bool = false;
+/// Whether light is kept apart by how it came.
+override has_light_layers: bool = false;
+/// Whether it is kept what pixels show, and how much their samples vary.
+override has_data_layers: bool = false;

@@ -5,7 +5,11 @@ use std::collections::HashMap;
 use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
-use crate::{gpu::Gpu, lights::Lights};
+use crate::{
+    gpu::Gpu,
+    layers::{has_data_layers, has_light_layers},
+    lights::Lights,
+};
 
 /// What a kernel must be able to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -34,6 +38,10 @@ pub(crate) struct Features {
     guide: bool,
     /// Whether camera paths note which texels they see.
     sightings: bool,
+    /// Light kept apart by how it came.
+    light_layers: bool,
+    /// What pixels show, and how much their samples vary.
+    data_layers: bool,
 }
 
 impl Features {
@@ -53,6 +61,8 @@ impl Features {
             photon_light_kind: 0,
             guide: false,
             sightings: false,
+            light_layers: has_light_layers(&scene.output.layers),
+            data_layers: has_data_layers(&scene.output.layers),
         }
     }
 
@@ -64,7 +74,7 @@ impl Features {
 
     /// The same for camera paths that note what they see of the energy maps.
     pub fn with_sightings(self) -> Self {
-        Self { sightings: true, ..self }
+        Self { sightings: true, light_layers: false, data_layers: false, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -82,6 +92,8 @@ impl Features {
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("notes_sightings", f64::from(self.sightings)),
+            ("has_light_layers", f64::from(self.light_layers)),
+            ("has_data_layers", f64::from(self.data_layers)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }
