@@ -36,10 +36,12 @@ fn link(compiler: &Wesl<FileResolver>, kernel: &str) -> Result<String, String> {
     let module = naga::front::wgsl::parse_str(&source).map_err(|error| {
         describe(kernel, &linked.sourcemap, &source, error.location(&source), error.emit_to_string(&source))
     })?;
-    Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).map_err(|error| {
-        let text = error.emit_to_string(&source);
-        describe(kernel, &linked.sourcemap, &source, error.location(&source), text)
-    })?;
+    Validator::new(ValidationFlags::all(), Capabilities::SHADER_FLOAT16_IN_FLOAT32).validate(&module).map_err(
+        |error| {
+            let text = error.emit_to_string(&source);
+            describe(kernel, &linked.sourcemap, &source, error.location(&source), text)
+        },
+    )?;
     Ok(source)
 }
 

@@ -10,15 +10,17 @@ import package::film::texels::footprint;
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{camera_params, film, irradiance, sightings, Sighting};
-import package::layout::features::notes_sightings;
+import package::layout::features::{has_textures, notes_sightings};
 import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::layout::scene::{
-    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER, NONE,
+    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
+    MATERIAL_TEXTURED, NONE,
 };
 import package::medium::media::{media_beyond, medium_ior, transmittance};
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
+import package::texture::surface::textured_surface;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
 const SLOT_MICROFACET: u32 = 4096u;
@@ -121,8 +123,13 @@ struct Vertex {
 
 /// The surface at `hit`. Its media say whether a boundary exists at all: where `beyond` begins with the same medium, it does not.
 fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex {
-    let point = surface_point(hit, triangle, (*path).direction);
-    let material = load_material(triangle.material);
+    var point = surface_point(hit, triangle, (*path).direction);
+    var material = load_material(triangle.material);
+    if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
+        let textured = textured_surface(material, point, hit, triangle, (*path).direction);
+        material = textured.material;
+        point.n_s = textured.n_s;
+    }
     let media = (*path).media;
     let ior = medium_ior(media);
     var vertex = Vertex(

@@ -1,25 +1,26 @@
 // Phase 1: photons leave the lights and fill the energy maps. docs/photon-paths.md defines each step.
 
 import package::bsdf::base::gloss_reflectance;
-import package::bsdf::specular::{adjoint_factor, outer_interface, scatter_specular, Interface};
+import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
 import package::emitter::emission::emit;
 import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
+import package::layout::features::{has_guide, has_textures};
 import package::layout::records::{load_material, load_triangle};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
-import package::layout::features::has_guide;
 import package::layout::photon_pass::{
     energy, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
-    Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, NONE,
+    Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
 };
 import package::medium::media::{media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
+import package::texture::surface::textured_surface;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
 const SLOT_MICROFACET: u32 = 4096u;
@@ -131,13 +132,15 @@ fn choice_number(photon: ptr<function, Photon>, choice: u32) -> f32 {
 }
 
 /// Lets a photon end on a receiver's base.
-fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
+fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, point: SurfacePoint) {
     // Light that met no caster belongs to the camera pass.
     if (*photon).depth == 0u {
         accounts[LEDGER_DIRECT] += (*photon).units;
     } else {
+        let factor = landing_factor((*photon).direction, point.n_g, point.n_s);
+        change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         accounts[LEDGER_DEPOSITED] += (*photon).units;
-        deposit(photon, hit, object, front);
+        deposit(photon, hit, object, point.front);
     }
 }
 
@@ -145,8 +148,13 @@ fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
 fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
     let triangle = load_triangle(hit.triangle);
-    let point = surface_point(hit, triangle, d);
-    let material = load_material(triangle.material);
+    var point = surface_point(hit, triangle, d);
+    var material = load_material(triangle.material);
+    if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
+        let textured = textured_surface(material, point, hit, triangle, d);
+        material = textured.material;
+        point.n_s = textured.n_s;
+    }
     let kind = material.kind & MATERIAL_KIND_BITS;
     let is_caster = (material.kind & MATERIAL_CASTER) != 0u;
     let is_receiver = (material.kind & MATERIAL_RECEIVER) != 0u;
@@ -177,7 +185,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
         gloss_chance = select(0.0, (gloss.x + gloss.y + gloss.z) / 3.0, is_caster);
         if u >= gloss_chance {
             change_flux(photon, (1.0 - gloss) / (1.0 - gloss_chance), LEDGER_ABSORBED);
-            land(photon, hit, triangle.object, point.front);
+            land(photon, hit, triangle.object, point);
             return false;
         }
     }
@@ -265,7 +273,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             continue;
         }
         in_flight = meet_surface(&photon, hit);
-        if is_pilot() && in_flight {
+        if is_pilot() && in_flight && photon.depth > 0u {
             landings[photon.index].texel = LOST;
         }
     }

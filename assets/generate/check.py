@@ -1,4 +1,4 @@
-"""Check the written meshes: closed, one piece, facing outward, with sound normals; and panoramas.
+"""Check the written meshes: closed, one piece, facing outward, with sound normals; panoramas and textures.
 
     python assets/generate/check.py
 
@@ -13,11 +13,13 @@ import numpy as np
 import drink
 import hdr
 import obj
+import png
 from mesh import facet_crosses, index_rows, signed_volume
 
 ASSETS = Path(__file__).resolve().parent.parent
 MESHES = ASSETS / "meshes"
 PANORAMAS = ASSETS / "environments"
+TEXTURES = ASSETS / "textures"
 
 LEAST_HEIGHT = 2e-6
 """The least height of a triangle over its longest edge, in metres."""
@@ -49,6 +51,10 @@ PANORAMA_TEXELS = (64, 128)
 
 BRIGHTEST = 100.0
 """The most radiance of a panorama's texel, W/(m² sr): smaller lights belong into the scene file."""
+
+TEXTURE_TEXELS = (256, 256)
+
+MOST_TEXTURE_BYTES = 100_000
 
 HEADINGS = (
     "mesh",
@@ -203,11 +209,28 @@ def check_panorama(path):
     return not found
 
 
+def check_texture(path):
+    """Print a texture's figures and faults; true if it has none."""
+    pixels = png.read(path)
+    found = []
+    if pixels.shape[:2] != TEXTURE_TEXELS:
+        found.append(f"its shape is {pixels.shape}")
+    if np.ptp(pixels) == 0:
+        found.append("it is empty")
+    if (size := path.stat().st_size) > MOST_TEXTURE_BYTES:
+        found.append("the file is too large")
+    height, width, channels = pixels.shape
+    figures = f"{width} x {height} texels, {channels} channels, {size / 1e3:.0f} kB"
+    print(f"{path.stem}: {figures}; {'; '.join(found) or 'ok'}")
+    return not found
+
+
 def main():
-    """Check every mesh and panorama; the exit status."""
+    """Check every mesh, panorama and texture; the exit status."""
     print(COLUMNS.format(*HEADINGS))
     sound = [check_file(name) for name in EXPECTED]
     sound += [check_panorama(path) for path in sorted(PANORAMAS.glob("*.hdr"))]
+    sound += [check_texture(path) for path in sorted(TEXTURES.glob("*.png"))]
     return 0 if all(sound) else 1
 
 

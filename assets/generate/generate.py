@@ -1,4 +1,4 @@
-"""Write every mesh and panorama of the project's scenes, and check them.
+"""Write every mesh, panorama and texture of the project's scenes, and check them.
 
     pip install -r assets/generate/requirements.txt
     python assets/generate/generate.py
@@ -15,12 +15,19 @@ import crystal
 import drink
 import hdr
 import ice_cube
+import leaf
+import metal
 import obj
+import png
 import ring
+import ripples
+import sign
 import sky
 import teapot
+import tiles
 import tube
 import tumbler
+import window
 import wine_glass
 
 BUILDERS = {
@@ -39,6 +46,17 @@ PANORAMAS = {
     "sky": (sky.build, "Clear sky with the glow about the sun, without its disc"),
 }
 
+TEXTURES = {
+    "tiles": tiles.color,
+    "tiles-roughness": tiles.roughness,
+    "tiles-normal": tiles.relief,
+    "ripples-normal": ripples.build,
+    "window": window.build,
+    "leaf": leaf.build,
+    "sign": sign.build,
+    "worn-metal": metal.build,
+}
+
 
 def main():
     """Write and check all; the exit status."""
@@ -48,6 +66,9 @@ def main():
     check.PANORAMAS.mkdir(parents=True, exist_ok=True)
     for name, (build, title) in PANORAMAS.items():
         hdr.write(check.PANORAMAS / f"{name}.hdr", build(), title)
+    check.TEXTURES.mkdir(parents=True, exist_ok=True)
+    for name, build in TEXTURES.items():
+        png.write(check.TEXTURES / f"{name}.png", build())
     return check.main()
 
 

@@ -121,9 +121,11 @@ fn sample_targets(point: vec3<f32>, u: vec2<f32>) -> TowardTargets {
 fn emit_toward(light: Light, u: vec4<f32>) -> Emission {
     var origin = light.position;
     var normal = vec3<f32>(0.0);
+    var strength = light.strength;
     if photon_light_kind == LIGHT_SURFACE {
         let place = sample_surface(light, u.zw);
         normal = place.normal;
+        strength = place.radiance;
         origin = off_surface(place.triangle, place.position, normal);
     }
     let toward = sample_targets(origin, u.xy);
@@ -134,7 +136,7 @@ fn emit_toward(light: Light, u: vec4<f32>) -> Emission {
     if photon_light_kind == LIGHT_SPOT {
         shape = spot_falloff(light, toward.direction);
     }
-    return Emission(origin, toward.direction, light.strength * (shape / toward.pdf));
+    return Emission(origin, toward.direction, strength * (shape / toward.pdf));
 }
 
 /// A ray from infinitely far across the casters' bounding spheres.

@@ -51,7 +51,7 @@ fn illuminate_from_surface(light: Light, probability: f32, point: vec3<f32>, u: 
     let direction = to_light / max(distance, 1e-30);
     let cos_light = -dot(direction, place.normal);
     let pdf = select(0.0, probability * distance * distance / (light.extent * cos_light), cos_light > 0.0);
-    return drawn(direction, distance, light.strength, pdf);
+    return drawn(direction, distance, place.radiance, pdf);
 }
 
 /// Draws one light by `u_light` and a point or direction of it by `u`, seen from `point`.

@@ -2,7 +2,7 @@
 
 import package::layout::records::load_corners;
 import package::geometry::traverse::Hit;
-import package::layout::scene::Triangle;
+import package::layout::scene::{Triangle, TRIANGLE_SMOOTH};
 
 /// A point on a surface, seen along a ray.
 struct SurfacePoint {
@@ -35,22 +35,30 @@ fn off_surface(triangle: Triangle, position: vec3<f32>, n: vec3<f32>) -> vec3<f3
     return position + offset_length(triangle) * n;
 }
 
+/// The normal interpolated between a triangle's corners, turned like the geometric one, which it is where there are none.
+fn interpolated_normal(hit: Hit, triangle: Triangle, point: SurfacePoint) -> vec3<f32> {
+    if (triangle.flags & TRIANGLE_SMOOTH) == 0u {
+        return point.n_g;
+    }
+    let b = hit.barycentric;
+    let c = load_corners(hit.triangle);
+    let n = normalize((1.0 - b.x - b.y) * c.normal_0 + b.x * c.normal_1 + b.y * c.normal_2);
+    return select(-n, n, point.front);
+}
+
+/// The surface at a hit, seen along `direction`, before pictures change its normal.
 fn surface_point(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> SurfacePoint {
     let b = hit.barycentric;
     let position = triangle.corner + b.x * triangle.edge_1 + b.y * triangle.edge_2;
     let outward = normalize(cross(triangle.edge_1, triangle.edge_2));
     let front = dot(direction, outward) < 0.0;
     let n_g = select(-outward, outward, front);
-    var n_s = n_g;
-    if triangle.interpolate_normals != 0u {
-        let c = load_corners(hit.triangle);
-        let n = normalize((1.0 - b.x - b.y) * c.normal_0 + b.x * c.normal_1 + b.y * c.normal_2);
-        n_s = select(-n, n, front);
-        if dot(direction, n_s) >= 0.0 {
-            n_s = n_g;
-        }
+    var point = SurfacePoint(position, n_g, n_g, front, offset_length(triangle));
+    let n_s = interpolated_normal(hit, triangle, point);
+    if dot(direction, n_s) < 0.0 {
+        point.n_s = n_s;
     }
-    return SurfacePoint(position, n_g, n_s, front, offset_length(triangle));
+    return point;
 }
 
 /// The origin of a ray that leaves the surface along `direction`, off the surface on that side.

@@ -1,7 +1,9 @@
 // Rays against the scene's triangles: eight-wide compressed BVH (Ylitie, Karras and Laine 2017).
 
+import package::layout::features::has_holes;
 import package::layout::records::{load_node, load_triangle};
-import package::layout::scene::{BvhNode, NONE};
+import package::layout::scene::{BvhNode, NONE, TRIANGLE_HAS_HOLES};
+import package::texture::opacity::{passes, ray_seed};
 
 /// Entries of the traversal stack; the host refuses a deeper tree.
 const STACK_SIZE: u32 = 24u;
@@ -95,8 +97,8 @@ fn meet_children(node: BvhNode, ray: BoxRay, t_max: f32) -> u32 {
     return first | second;
 }
 
-/// A triangle against a ray (Möller and Trumbore 1997); `nearest` if it is missed or farther.
-fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, nearest: Hit) -> Hit {
+/// A triangle against a ray (Möller and Trumbore 1997); `nearest` if it is missed or farther. `seed` decides about holes.
+fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, seed: u32, nearest: Hit) -> Hit {
     let triangle = load_triangle(index);
     let p = cross(direction, triangle.edge_2);
     let inverse = 1.0 / dot(triangle.edge_1, p);
@@ -105,7 +107,13 @@ fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, nearest: H
     let q = cross(s, triangle.edge_1);
     let v = dot(direction, q) * inverse;
     let t = dot(triangle.edge_2, q) * inverse;
-    if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < nearest.t {
+    let is_nearer = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < nearest.t;
+    if has_holes && is_nearer && (triangle.flags & TRIANGLE_HAS_HOLES) != 0u {
+        if passes(seed, index, triangle.material, vec2<f32>(u, v)) {
+            return nearest;
+        }
+    }
+    if is_nearer {
         return Hit(index, t, vec2<f32>(u, v));
     }
     return nearest;
@@ -115,6 +123,10 @@ fn meet_triangle(index: u32, origin: vec3<f32>, direction: vec3<f32>, nearest: H
 fn trace(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> Hit {
     let ray = box_ray(origin, direction);
     var hit = Hit(NONE, t_max, vec2<f32>(0.0));
+    var seed = 0u;
+    if has_holes {
+        seed = ray_seed(origin, direction);
+    }
     var depth = 0u;
     // Inner children to visit (first child, hit bits and inner mask), and triangles to test (first triangle, hit bits).
     var group = vec2<u32>(0u, 0x80000000u);
@@ -138,7 +150,7 @@ fn trace(origin: vec3<f32>, direction: vec3<f32>, t_max: f32, any_hit: bool) -> 
         while leaves.y != 0u {
             let bit = firstTrailingBit(leaves.y);
             leaves.y &= leaves.y - 1u;
-            hit = meet_triangle(leaves.x + bit, origin, direction, hit);
+            hit = meet_triangle(leaves.x + bit, origin, direction, seed, hit);
         }
         if any_hit && hit.triangle != NONE {
             break;

@@ -13,6 +13,10 @@ override has_surface_lights: bool = true;
 override has_distant_lights: bool = true;
 /// Whether there is an environment.
 override has_environment: bool = true;
+/// Whether surfaces show pictures.
+override has_textures: bool = true;
+/// Whether rays may pass surfaces as if they were not there.
+override has_holes: bool = true;
 /// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.
 override photon_light_kind: u32 = 0u;
 /// Whether a guide moves photons.

@@ -1,8 +1,9 @@
 // Records of the scene's textures.
 
 import package::layout::scene::{
-    corners, emitting_triangles, environment, lights, materials, nodes, objects, triangles, BvhNode, Light, Material, Object, Triangle,
-    TriangleCorners, RECORDS_WIDTH_BITS,
+    corners, emitting_triangles, environment, lights, material_textures, materials, nodes, objects, surface_textures, texture_coordinates,
+    texture_texels, triangles, BvhNode, Light, Material, MaterialTextures, Object, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
+    RECORDS_WIDTH_BITS,
 };
 
 /// The place of a texel, counted row by row.
@@ -105,4 +106,38 @@ fn load_emitting_triangle(entry: u32) -> vec2<u32> {
 /// A texel of the environment's record.
 fn load_environment(index: u32) -> vec4<f32> {
     return bitcast<vec4<f32>>(textureLoad(environment, record_texel(index), 0));
+}
+
+fn load_texture_coordinates(triangle: u32) -> TextureCoordinates {
+    let texel_0 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle), 0));
+    let texel_1 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle + 1u), 0));
+    return TextureCoordinates(texel_0, texel_1.xy, vec2<u32>(0u));
+}
+
+/// The pictures of a material.
+fn load_material_textures(material: u32) -> MaterialTextures {
+    let first = 3u * material;
+    let texel_0 = textureLoad(material_textures, record_texel(first), 0);
+    let texel_1 = textureLoad(material_textures, record_texel(first + 1u), 0);
+    let texel_2 = textureLoad(material_textures, record_texel(first + 2u), 0);
+    return MaterialTextures(
+        texel_0.x, texel_0.y, texel_0.z, texel_0.w,
+        texel_1.x, bitcast<f32>(texel_1.y), texel_1.z, bitcast<f32>(texel_1.w),
+        bitcast<f32>(texel_2.x), array<u32, 3>(),
+    );
+}
+
+fn load_surface_texture(index: u32) -> SurfaceTexture {
+    let first = 3u * index;
+    let texel_0 = textureLoad(surface_textures, record_texel(first), 0);
+    let texel_1 = bitcast<vec4<f32>>(textureLoad(surface_textures, record_texel(first + 1u), 0));
+    let texel_2 = bitcast<vec4<f32>>(textureLoad(surface_textures, record_texel(first + 2u), 0));
+    return SurfaceTexture(texel_0.x, texel_0.y, texel_0.z, texel_0.w, texel_1.xyz, 0u, texel_2.xyz, 0u);
+}
+
+/// A picture's texel, by its place among the texels of all pictures.
+fn load_texture_texel(index: u32) -> vec4<f32> {
+    let pair = textureLoad(texture_texels, record_texel(index >> 1u), 0);
+    let halves = select(pair.xy, pair.zw, (index & 1u) != 0u);
+    return vec4<f32>(unpack2x16float(halves.x), unpack2x16float(halves.y));
 }

@@ -26,8 +26,8 @@ struct Triangle {
     material: u32,
     /// Third corner minus the first, metres.
     edge_2: vec3<f32>,
-    /// 1 if the corners' normals are interpolated, 0 for a flat facet.
-    interpolate_normals: u32,
+    /// The TRIANGLE_ bits that apply.
+    flags: u32,
 }
 
 /// What a triangle's corners carry, in the order of the triangles.
@@ -48,6 +48,60 @@ struct TriangleCorners {
     texel_01: vec4<f32>,
 }
 
+/// Texture coordinates of a triangle's corners, in the order of the triangles.
+struct TextureCoordinates {
+    /// Those of the first corner, then of the second.
+    uv_01: vec4<f32>,
+    /// Those of the third corner.
+    uv_2: vec2<f32>,
+    /// Unused.
+    padding: vec2<u32>,
+}
+
+/// The pictures of a material: indices of SurfaceTexture records, or NONE.
+struct MaterialTextures {
+    /// Factor on the material's colour.
+    color: u32,
+    /// Factor on its roughness.
+    roughness: u32,
+    /// Factor on its share of metal.
+    metallic: u32,
+    /// Factor on its emission.
+    emission: u32,
+    /// Its normal map.
+    normal: u32,
+    /// Factor on a normal map's components along the surface.
+    normal_strength: f32,
+    /// Factor on its opacity.
+    opacity: u32,
+    /// Opacity before the picture.
+    opacity_factor: f32,
+    /// Opacity from which on a surface is whole, and below which it is a hole; negative where it is neither.
+    opacity_cutoff: f32,
+    /// Unused.
+    padding: array<u32, 3>,
+}
+
+/// A picture as it lies on a surface.
+struct SurfaceTexture {
+    /// Index of the picture's first texel, which is even.
+    first_texel: u32,
+    /// Texels along its upper side.
+    width: u32,
+    /// Texels along its left side.
+    height: u32,
+    /// How it wraps, a WRAP_ constant for each axis of two bits each; TEXTURE_NEAREST; from TEXTURE_CHANNEL_SHIFT on the channel that a number is read from.
+    flags: u32,
+    /// s on the picture: factors of u, v and 1.
+    s_from_uv: vec3<f32>,
+    /// Unused.
+    padding_s: u32,
+    /// t on the picture: factors of u, v and 1.
+    t_from_uv: vec3<f32>,
+    /// Unused.
+    padding_t: u32,
+}
+
 /// An object's place in the energy maps.
 struct Object {
     /// Index of its map's first texel.
@@ -62,7 +116,7 @@ struct Object {
 
 /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
 struct Material {
-    /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss.
+    /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture.
     base: vec3<f32>,
     /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
     kind: u32,
@@ -70,9 +124,9 @@ struct Material {
     specular: vec3<f32>,
     /// Index of refraction; exponent of Phong's specular lobe.
     ior: f32,
-    /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index.
+    /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of textured surfaces x is a coat's reflectance from within, or the share of metal.
     extinction: vec3<f32>,
-    /// Width α of the microfacets' distribution, 0 for a smooth surface.
+    /// Width α of the microfacets' distribution, 0 for a smooth surface. Of a textured surface the roughness before its picture.
     gloss: f32,
     /// Factor on light that is transmitted; Phong's factor on ambient light.
     tint: vec3<f32>,
@@ -122,6 +176,21 @@ const MATERIAL_KIND_BITS: u32 = 0xffu;
 const MATERIAL_CASTER: u32 = 0x100u;
 /// Set where the surface has a diffuse lobe and an energy map.
 const MATERIAL_RECEIVER: u32 = 0x200u;
+/// Set where pictures make the surface differ from point to point.
+const MATERIAL_TEXTURED: u32 = 0x400u;
+
+/// Set where the corners' normals are interpolated.
+const TRIANGLE_SMOOTH: u32 = 1u;
+/// Set where rays may pass through.
+const TRIANGLE_HAS_HOLES: u32 = 2u;
+
+const WRAP_REPEAT: u32 = 0u;
+const WRAP_MIRROR: u32 = 1u;
+const WRAP_CLAMP: u32 = 2u;
+/// Set where a place has the texel that it lies in.
+const TEXTURE_NEAREST: u32 = 16u;
+/// Where the channel stands in a texture's flags.
+const TEXTURE_CHANNEL_SHIFT: u32 = 8u;
 
 const LIGHT_SPHERE: u32 = 0u;
 const LIGHT_POINT: u32 = 1u;
@@ -155,3 +224,11 @@ const RECORDS_WIDTH_BITS: u32 = 13u;
 /// including it. Then the picture, row by row from the top: radiance, W/(m² sr), and the probability, within the row, of a column up to
 /// and including this one.
 @group(0) @binding(7) var environment: texture_2d<u32>;
+/// TextureCoordinates records of 2 texels, floating-point numbers as their bits; without textures, a single one.
+@group(0) @binding(8) var texture_coordinates: texture_2d<u32>;
+/// MaterialTextures records of 3 texels, floating-point numbers as their bits.
+@group(0) @binding(9) var material_textures: texture_2d<u32>;
+/// SurfaceTexture records of 3 texels, floating-point numbers as their bits.
+@group(0) @binding(10) var surface_textures: texture_2d<u32>;
+/// The pictures' texels of four half-precision numbers, two in each, row by row from the top.
+@group(0) @binding(11) var texture_texels: texture_2d<u32>;

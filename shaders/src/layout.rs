@@ -76,8 +76,8 @@ shared_structs! {
         material: u32,
         /// Third corner minus the first, metres.
         edge_2: [f32; 3],
-        /// 1 if the corners' normals are interpolated, 0 for a flat facet.
-        interpolate_normals: u32,
+        /// The TRIANGLE_ bits that apply.
+        flags: u32,
     }
     /// What a triangle's corners carry, in the order of the triangles.
     struct TriangleCorners {
@@ -96,6 +96,57 @@ shared_structs! {
         /// Texel column and row of the first corner, then of the second.
         texel_01: [f32; 4],
     }
+    /// Texture coordinates of a triangle's corners, in the order of the triangles.
+    struct TextureCoordinates {
+        /// Those of the first corner, then of the second.
+        uv_01: [f32; 4],
+        /// Those of the third corner.
+        uv_2: [f32; 2],
+        /// Unused.
+        padding: [u32; 2],
+    }
+    /// The pictures of a material: indices of SurfaceTexture records, or NONE.
+    struct MaterialTextures {
+        /// Factor on the material's colour.
+        color: u32,
+        /// Factor on its roughness.
+        roughness: u32,
+        /// Factor on its share of metal.
+        metallic: u32,
+        /// Factor on its emission.
+        emission: u32,
+        /// Its normal map.
+        normal: u32,
+        /// Factor on a normal map's components along the surface.
+        normal_strength: f32,
+        /// Factor on its opacity.
+        opacity: u32,
+        /// Opacity before the picture.
+        opacity_factor: f32,
+        /// Opacity from which on a surface is whole, and below which it is a hole; negative where it is neither.
+        opacity_cutoff: f32,
+        /// Unused.
+        padding: [u32; 3],
+    }
+    /// A picture as it lies on a surface.
+    struct SurfaceTexture {
+        /// Index of the picture's first texel, which is even.
+        first_texel: u32,
+        /// Texels along its upper side.
+        width: u32,
+        /// Texels along its left side.
+        height: u32,
+        /// How it wraps, a WRAP_ constant for each axis of two bits each; TEXTURE_NEAREST; from TEXTURE_CHANNEL_SHIFT on the channel that a number is read from.
+        flags: u32,
+        /// s on the picture: factors of u, v and 1.
+        s_from_uv: [f32; 3],
+        /// Unused.
+        padding_s: u32,
+        /// t on the picture: factors of u, v and 1.
+        t_from_uv: [f32; 3],
+        /// Unused.
+        padding_t: u32,
+    }
     /// An object's place in the energy maps.
     struct Object {
         /// Index of its map's first texel.
@@ -109,7 +160,7 @@ shared_structs! {
     }
     /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
     struct Material {
-        /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss.
+        /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture.
         base: [f32; 3],
         /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
         kind: u32,
@@ -117,9 +168,9 @@ shared_structs! {
         specular: [f32; 3],
         /// Index of refraction; exponent of Phong's specular lobe.
         ior: f32,
-        /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index.
+        /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of textured surfaces x is a coat's reflectance from within, or the share of metal.
         extinction: [f32; 3],
-        /// Width α of the microfacets' distribution, 0 for a smooth surface.
+        /// Width α of the microfacets' distribution, 0 for a smooth surface. Of a textured surface the roughness before its picture.
         gloss: f32,
         /// Factor on light that is transmitted; Phong's factor on ambient light.
         tint: [f32; 3],
@@ -366,6 +417,30 @@ pub mod material_kind {
     pub const CASTER: u32 = 0x100;
     /// Set where the surface has a diffuse lobe and an energy map.
     pub const RECEIVER: u32 = 0x200;
+    /// Set where pictures make the surface differ from point to point.
+    pub const TEXTURED: u32 = 0x400;
+}
+
+/// Bits of [`Triangle::flags`].
+pub mod triangle_flag {
+    /// Set where the corners' normals are interpolated.
+    pub const SMOOTH: u32 = 1;
+    /// Set where rays may pass through.
+    pub const HAS_HOLES: u32 = 2;
+}
+
+/// Bits of [`SurfaceTexture::flags`].
+pub mod texture_flag {
+    /// It begins again.
+    pub const WRAP_REPEAT: u32 = 0;
+    /// It goes back, and then begins again.
+    pub const WRAP_MIRROR: u32 = 1;
+    /// Its last texel goes on.
+    pub const WRAP_CLAMP: u32 = 2;
+    /// Set where a place has the texel that it lies in.
+    pub const NEAREST: u32 = 16;
+    /// Where the channel stands.
+    pub const CHANNEL_SHIFT: u32 = 8;
 }
 
 /// Values of [`Light::kind`].
@@ -421,6 +496,14 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("MATERIAL_METALLIC_ROUGHNESS", material_kind::METALLIC_ROUGHNESS),
     ("MATERIAL_CASTER", material_kind::CASTER),
     ("MATERIAL_RECEIVER", material_kind::RECEIVER),
+    ("MATERIAL_TEXTURED", material_kind::TEXTURED),
+    ("TRIANGLE_SMOOTH", triangle_flag::SMOOTH),
+    ("TRIANGLE_HAS_HOLES", triangle_flag::HAS_HOLES),
+    ("WRAP_REPEAT", texture_flag::WRAP_REPEAT),
+    ("WRAP_MIRROR", texture_flag::WRAP_MIRROR),
+    ("WRAP_CLAMP", texture_flag::WRAP_CLAMP),
+    ("TEXTURE_NEAREST", texture_flag::NEAREST),
+    ("TEXTURE_CHANNEL_SHIFT", texture_flag::CHANNEL_SHIFT),
     ("LIGHT_SPHERE", light_kind::SPHERE),
     ("LIGHT_POINT", light_kind::POINT),
     ("LIGHT_SPOT", light_kind::SPOT),

@@ -3,7 +3,7 @@
 use std::{f64::consts::PI, sync::Arc};
 
 use diacaustic::{EnergyMap, Film};
-use diacaustic_scene::{Material, MaterialKind, Mesh, Object, Scene, metal};
+use diacaustic_scene::{Dispersion, Material, MaterialKind, Mesh, Object, Scene, metal};
 use diacaustic_tests::{emit, render, scene};
 use glam::{Affine3A, DVec3, Vec3};
 
@@ -149,11 +149,8 @@ fn nephroid(size: u32) -> EnergyMap {
          ]"
     ));
     let silver = metal("silver").expect("a metal of that name");
-    scene.materials.push(Material {
-        name: "silver".to_owned(),
-        kind: MaterialKind::Conductor { eta: silver.eta, k: silver.k, roughness: 0.0 },
-        emission: Vec3::ZERO,
-    });
+    let kind = MaterialKind::Conductor { eta: silver.eta, k: silver.k, roughness: 0.0 };
+    scene.materials.push(Material::new("silver", kind));
     scene.objects.push(Object {
         name: "tube".to_owned(),
         mesh: Arc::new(tube(0.3, 4096)),
@@ -219,17 +216,15 @@ fn prism_turns_light_by_its_minimum_deviation() {
         (0.5 * deviation).cos(),
         (0.5 * deviation).sin()
     ));
-    scene.materials.push(Material {
-        name: "BK7".to_owned(),
-        kind: MaterialKind::Dielectric {
-            ior: n as f32,
-            tint: Vec3::ONE,
-            absorption: Vec3::ZERO,
-            roughness: 0.0,
-            priority: 0,
-        },
-        emission: Vec3::ZERO,
-    });
+    let kind = MaterialKind::Dielectric {
+        ior: n as f32,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    };
+    scene.materials.push(Material::new("BK7", kind));
     scene.objects.push(Object {
         name: "prism".to_owned(),
         mesh: Arc::new(mesh),

@@ -49,7 +49,7 @@ fn glass_is_closed_and_faces_outward() {
         let (name, scene) = load(&file);
         let is_glass = |material: &usize| matches!(scene.materials[*material].kind, MaterialKind::Dielectric { .. });
         let glass: Vec<_> = scene.objects.iter().filter(|object| object.materials.iter().any(is_glass)).collect();
-        let casts = |material: &usize| scene.materials[*material].kind.is_caster();
+        let casts = |material: &usize| scene.materials[*material].is_caster();
         assert!(scene.objects.iter().any(|o| o.materials.iter().any(casts)), "{name}: nothing makes caustics");
         for object in glass {
             let (open, volume) = (object.mesh.open_edges(), object.mesh.signed_volume());

@@ -4,17 +4,19 @@
 mod base;
 mod gloss;
 pub mod microfacet;
+mod prepared;
 mod scatter;
 
-use diacaustic_scene::{MaterialKind, SMOOTH};
-use glam::DVec3;
+use diacaustic_scene::{Material, MaterialKind, SMOOTH};
+use glam::{DVec3, Vec3};
 
 use crate::fresnel;
 use crate::geometry::{Facing, Hit, World};
 use crate::media::Media;
 
 pub use self::base::Base;
-pub(crate) use self::base::resolved_albedo;
+pub(crate) use self::prepared::{Factors, PreparedMaterial};
+pub(crate) use self::scatter::SHADING_NORMAL_LIMIT;
 pub use self::scatter::{Draw, Outcome, Scattered};
 
 use self::microfacet::Microfacets;
@@ -33,13 +35,14 @@ impl Crossing {
     pub fn of(world: &World, hit: &Hit, facing: &Facing, media: Media) -> Self {
         let material = world.material_index(hit.triangle);
         let beyond = world.dielectrics().beyond(media, material, facing.front);
-        let kind = world.material(hit.triangle);
-        if matches!(kind, MaterialKind::Dielectric { .. }) && beyond.filling() == media.filling() {
+        let prepared = world.prepared(hit.triangle);
+        let is_dielectric = matches!(prepared.material.kind, MaterialKind::Dielectric { .. });
+        if is_dielectric && beyond.filling() == media.filling() {
             return Self::Nothing(beyond);
         }
-        let ior = |media| world.dielectrics().ior(media);
-        let base = Base::of(kind, world.scene().ambient.as_dvec3(), world.base_albedo(material));
-        Self::Surface(Surface::with_base(kind, base, ior(&media), ior(&beyond)), beyond)
+        let ior = [&media, &beyond].map(|media| world.dielectrics().ior(media));
+        let ambient = world.scene().ambient.as_dvec3();
+        Self::Surface(Surface::at_point(prepared, &world.factors(hit), ambient, ior), beyond)
     }
 }
 
@@ -85,38 +88,42 @@ impl Specular {
 }
 
 impl Surface {
-    /// The surface of a material between two indices of refraction: on the side of wo and beyond. Materials other than
-    /// dielectrics have the same on both sides. `ambient` is the scene's radiance of that name, W/(m² sr).
-    pub fn new(kind: &MaterialKind, ambient: DVec3, ior: f64, ior_beyond: f64) -> Self {
-        Self::with_base(kind, Base::of(kind, ambient, resolved_albedo(kind)), ior, ior_beyond)
+    /// The surface of a material, but for its pictures, between two indices of refraction: on the side of wo and beyond.
+    /// Materials other than dielectrics have the same on both sides. `ambient` is the scene's radiance of that name,
+    /// W/(m² sr).
+    pub fn new(material: &Material, ambient: DVec3, ior: f64, ior_beyond: f64) -> Self {
+        Self::at_point(&PreparedMaterial::new(material), &Factors::ONE, ambient, [ior, ior_beyond])
     }
 
-    fn with_base(kind: &MaterialKind, base: Option<Base>, ior: f64, ior_beyond: f64) -> Self {
-        let (specular, roughness) = match *kind {
+    /// The surface at a point where the pictures have these factors.
+    fn at_point(prepared: &PreparedMaterial, factors: &Factors, ambient: DVec3, [ior, ior_beyond]: [f64; 2]) -> Self {
+        let colored = |color: Vec3| color.as_dvec3() * factors.color;
+        let (specular, roughness) = match prepared.material.kind {
             MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => (Specular::None, 0.0),
-            MaterialKind::Mirror { reflectance } => (Specular::Mirror { reflectance: reflectance.as_dvec3() }, 0.0),
+            MaterialKind::Mirror { reflectance } => (Specular::Mirror { reflectance: colored(reflectance) }, 0.0),
             MaterialKind::Conductor { eta, k, roughness } => {
                 (Specular::Conductor { n: eta.as_dvec3() / ior, k: k.as_dvec3() / ior }, roughness)
             }
             MaterialKind::Dielectric { tint, roughness, .. } => {
-                (Specular::Dielectric { eta: ior / ior_beyond, tint: tint.as_dvec3() }, roughness)
+                (Specular::Dielectric { eta: ior / ior_beyond, tint: colored(tint) }, roughness)
             }
             MaterialKind::ThinWalled { ior: own, tint } => {
-                (Specular::ThinWalled { eta: ior / f64::from(own), tint: tint.as_dvec3() }, 0.0)
+                (Specular::ThinWalled { eta: ior / f64::from(own), tint: colored(tint) }, 0.0)
             }
             MaterialKind::Coated { ior: own, roughness, .. } => {
                 (Specular::Coat { eta: ior / f64::from(own) }, roughness)
             }
             MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
-                let f0 = base::metallic_f0(base_color.as_dvec3(), f64::from(metallic));
+                let f0 = base::metallic_f0(colored(base_color), f64::from(metallic) * factors.metallic);
                 (Specular::Schlick { f0 }, roughness)
             }
         };
+        let roughness = f64::from(roughness) * factors.roughness;
         Self {
             specular,
-            microfacets: (roughness >= SMOOTH).then(|| Microfacets::of_roughness(f64::from(roughness))),
-            base,
-            is_caster: kind.is_caster(),
+            microfacets: (roughness >= f64::from(SMOOTH)).then(|| Microfacets::of_roughness(roughness)),
+            base: Base::of(prepared, factors, ambient),
+            is_caster: prepared.is_caster,
         }
     }
 

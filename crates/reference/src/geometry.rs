@@ -3,14 +3,16 @@
 mod bvh;
 mod disk;
 mod light_shape;
+mod normal_map;
 mod rectangle;
 mod sphere;
+mod surface_point;
 mod triangle;
 
-use diacaustic_scene::{Light, MaterialKind, Scene};
+use diacaustic_scene::{Light, Material, Scene};
 use glam::{DVec3, Vec3};
 
-use crate::bsdf;
+use crate::bsdf::PreparedMaterial;
 use crate::lights::{self, EmissiveSurfaces, Environment};
 use crate::media::{Dielectrics, Media};
 
@@ -99,7 +101,9 @@ pub struct World<'a> {
     epsilon: f64,
     bounds: Sphere,
     dielectrics: Dielectrics,
-    base_albedos: Vec<DVec3>,
+    materials: Vec<PreparedMaterial<'a>>,
+    /// Whether rays may pass any of the materials.
+    has_holes: bool,
     environment: Option<Environment>,
     emissive: EmissiveSurfaces,
 }
@@ -118,7 +122,8 @@ impl<'a> World<'a> {
             light_media: scene.lights.iter().map(|l| position(l).map_or(Media::AIR, around)).collect(),
             epsilon: RELATIVE_EPSILON * bvh.extent(),
             bounds: bounding_sphere(&triangles, &light_shapes),
-            base_albedos: scene.materials.iter().map(|material| bsdf::resolved_albedo(&material.kind)).collect(),
+            materials: scene.materials.iter().map(PreparedMaterial::new).collect(),
+            has_holes: scene.materials.iter().any(Material::has_holes),
             environment: Environment::of(scene),
             emissive: EmissiveSurfaces::of(scene, &triangles, &dielectrics),
             triangles,
@@ -186,18 +191,12 @@ impl<'a> World<'a> {
     }
 
     /// The material that a ray meets at a triangle.
-    pub fn material(&self, triangle: usize) -> &'a MaterialKind {
-        &self.scene.materials[self.material_index(triangle)].kind
+    pub fn material(&self, triangle: usize) -> &'a Material {
+        self.prepared(triangle).material
     }
 
-    /// Radiance that a triangle's front sends in each direction, W/(m² sr).
-    pub fn emission(&self, triangle: usize) -> DVec3 {
-        self.scene.materials[self.material_index(triangle)].emission.as_dvec3()
-    }
-
-    /// ρ\* of a material's base.
-    pub(crate) fn base_albedo(&self, material: usize) -> DVec3 {
-        self.base_albedos[material]
+    pub(crate) fn prepared(&self, triangle: usize) -> &PreparedMaterial<'a> {
+        &self.materials[self.material_index(triangle)]
     }
 
     pub(crate) fn environment(&self) -> Option<&Environment> {
@@ -210,7 +209,8 @@ impl<'a> World<'a> {
 
     /// The nearest triangle or light along a ray, or none.
     pub fn meet(&self, ray: &Ray, from: Departure) -> Option<Meeting> {
-        let hit = self.bvh.nearest(ray, self.epsilon, f64::INFINITY, skipped_triangle(from));
+        let stands = |hit: &Hit| from != Departure::Triangle(hit.triangle) && self.stands(ray, hit, 0);
+        let hit = self.bvh.nearest(ray, self.epsilon..f64::INFINITY, stands);
         let mut limit = hit.map_or(f64::INFINITY, |hit| hit.distance);
         let mut nearest = hit.map(Meeting::Surface);
         for (light, shape) in self.shapes() {
@@ -227,11 +227,13 @@ impl<'a> World<'a> {
         nearest
     }
 
-    /// Whether anything but the target stands within `distance` metres along a ray.
-    pub fn occluded(&self, ray: &Ray, distance: f64, from: Departure, toward: Target) -> bool {
+    /// Whether anything but the target stands within `distance` metres along a ray. `key` decides together with the ray
+    /// which triangles of an opacity below 1 do: many rays from one point to a light without extent are the same.
+    pub fn occluded(&self, ray: &Ray, distance: f64, from: Departure, toward: Target, key: u64) -> bool {
+        let stands = |hit: &Hit| from != Departure::Triangle(hit.triangle) && self.stands(ray, hit, key);
         self.shapes().any(|(light, shape)| {
             toward != Target::Light(light) && shape.meet(ray, self.epsilon).is_some_and(|(met, _)| met < distance)
-        }) || self.bvh.any(ray, self.epsilon, distance, skipped_triangle(from))
+        }) || self.bvh.any(ray, self.epsilon..distance, stands)
     }
 
     fn shapes(&self) -> impl Iterator<Item = (usize, &LightShape)> {
@@ -255,11 +257,4 @@ fn bounding_sphere(triangles: &[Triangle], lights: &[Option<LightShape>]) -> Sph
         .map(|p| p.distance(center))
         .chain(spheres.iter().map(|sphere| sphere.center.distance(center) + sphere.radius));
     Sphere { center, radius: reaches.fold(0.0, f64::max) }
-}
-
-fn skipped_triangle(from: Departure) -> Option<usize> {
-    match from {
-        Departure::Triangle(triangle) => Some(triangle),
-        Departure::Open | Departure::Light(_) => None,
-    }
 }

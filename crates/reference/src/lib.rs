@@ -22,4 +22,5 @@ pub mod photons;
 pub mod random;
 mod roulette;
 pub mod snell;
+pub mod texture;
 pub mod warp;

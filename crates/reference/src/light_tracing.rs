@@ -26,7 +26,7 @@ const CHUNK: u32 = 16_384;
 
 /// Irradiance on the bins of a region, W/m²: row by row, the columns along `edge_u`.
 ///
-/// On a receiver with a gloss it is what enters the base.
+/// It is that on a surface of the receiver's shading normal; with a gloss, what enters the base.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
     /// Straight from the lights.

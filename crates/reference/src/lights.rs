@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::World;
 
-pub(crate) use self::emissive::EmissiveSurfaces;
+pub(crate) use self::emissive::{EmissiveSurfaces, EmissiveTriangle};
 pub(crate) use self::environment::Environment;
 pub(crate) use self::sample::{LightSample, sample_light, sample_surfaces};
 

@@ -4,7 +4,7 @@ mod shapes;
 
 use diacaustic_reference::camera::radiance;
 use diacaustic_reference::geometry::World;
-use diacaustic_scene::{MaterialKind, Mesh, Scene};
+use diacaustic_scene::{Dispersion, MaterialKind, Mesh, Scene};
 use glam::{DVec3, Vec3};
 
 use shapes::{ball, block, flat, floor, glass, named, scene};
@@ -17,7 +17,7 @@ fn in_uniform_light(parts: Vec<(Mesh, MaterialKind, Vec3)>) -> Scene {
 
 fn ranked(ior: f32, priority: i32) -> MaterialKind {
     let (tint, absorption) = (Vec3::ONE, Vec3::ZERO);
-    MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority }
+    MaterialKind::Dielectric { ior, dispersion: Dispersion::None, tint, absorption, roughness: 0.0, priority }
 }
 
 fn assert_invisible(scene: &Scene) {

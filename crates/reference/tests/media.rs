@@ -6,14 +6,14 @@ use diacaustic_reference::camera::{irradiance_at, radiance};
 use diacaustic_reference::fresnel::reflectance;
 use diacaustic_reference::geometry::{Sphere, World};
 use diacaustic_reference::light_tracing::{Region, irradiance_on};
-use diacaustic_scene::{LightKind, MaterialKind, Scene};
+use diacaustic_scene::{Dispersion, LightKind, MaterialKind, Scene};
 use glam::{DVec3, Vec3};
 
 use shapes::{absorbing_glass, block, diffuse, floor, glass, light, named, scene};
 
 fn ranked(ior: f32, absorption: f32, priority: i32) -> MaterialKind {
     let (tint, absorption) = (Vec3::ONE, Vec3::splat(absorption));
-    MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority }
+    MaterialKind::Dielectric { ior, dispersion: Dispersion::None, tint, absorption, roughness: 0.0, priority }
 }
 
 /// A slab from z = 1 to 1.5 and another from 1.1 to 1.3 within it, of one index, seen from straight in front in even

@@ -7,12 +7,16 @@ use std::f64::consts::TAU;
 use diacaustic_reference::bsdf::{Draw, Outcome, Surface};
 use diacaustic_reference::geometry::Facing;
 use diacaustic_reference::warp;
-use diacaustic_scene::MaterialKind;
+use diacaustic_scene::{Material, MaterialKind};
 use glam::{DVec3, Vec3};
 
 use shapes::frosted;
 
 const FACING: Facing = Facing { point: DVec3::ZERO, front: true, normal_geometric: DVec3::Z, normal_shading: DVec3::Z };
+
+fn surface(kind: &MaterialKind, ior: f64, beyond: f64) -> Surface {
+    Surface::new(&Material::new("", kind.clone()), DVec3::ZERO, ior, beyond)
+}
 
 /// Points that fill the unit cube evenly (Roberts 2018: powers of the inverse of the root of x⁴ = x + 1).
 fn points(count: u32) -> impl Iterator<Item = [f64; 3]> {
@@ -53,7 +57,7 @@ fn lobes_are_drawn_as_they_are_evaluated() {
     let metal = MaterialKind::Conductor { eta: Vec3::splat(0.2), k: Vec3::splat(3.0), roughness: 0.6 };
     let cases = [(frosted(1.5, 0.6), [1.0, 1.5]), (frosted(1.5, 0.5), [1.5, 1.0]), (metal, [1.0, 1.0])];
     for (kind, [ior, beyond]) in cases {
-        let surface = Surface::new(&kind, DVec3::ZERO, ior, beyond);
+        let surface = surface(&kind, ior, beyond);
         for cos in [1.0, 0.8, 0.4, 0.15] {
             let wo = from_angle(cos);
             let drawn = drawn(&surface, wo, 400_000);
@@ -66,8 +70,8 @@ fn lobes_are_drawn_as_they_are_evaluated() {
 
 #[test]
 fn lobes_are_reciprocal() {
-    let entering = Surface::new(&frosted(1.5, 0.5), DVec3::ZERO, 1.0, 1.5);
-    let leaving = Surface::new(&frosted(1.5, 0.5), DVec3::ZERO, 1.5, 1.0);
+    let entering = surface(&frosted(1.5, 0.5), 1.0, 1.5);
+    let leaving = surface(&frosted(1.5, 0.5), 1.5, 1.0);
     // The facing's front is the side of wo.
     let flipped = |w: DVec3| DVec3::new(w.x, w.y, -w.z);
     for (cos_o, cos_i) in [(0.9, 0.7), (0.5, 0.9), (0.3, 0.6)] {
@@ -99,8 +103,7 @@ fn mean_loss(surface: &Surface, count: u32) -> f64 {
 
 #[test]
 fn rough_glass_loses_little() {
-    let lost =
-        |roughness, ior, beyond| mean_loss(&Surface::new(&frosted(1.5, roughness), DVec3::ZERO, ior, beyond), 4000);
+    let lost = |roughness, ior, beyond| mean_loss(&surface(&frosted(1.5, roughness), ior, beyond), 4000);
     let entering: Vec<f64> = [0.2, 0.5, 0.8].map(|roughness| lost(roughness, 1.0, 1.5)).to_vec();
     assert!(entering.is_sorted() && entering[0] > 0.0 && entering[1] < 0.05, "{entering:?}");
     assert!(lost(0.0, 1.0, 1.5).abs() < 1e-12 && lost(0.0, 1.5, 1.0).abs() < 1e-12);
@@ -117,7 +120,7 @@ fn table_of_losses() {
         let roughness = 0.1 * tenth as f32;
         let entries =
             [(frosted(1.5, roughness), 1.0, 1.5), (frosted(1.5, roughness), 1.5, 1.0), (perfect(roughness), 1.0, 1.0)]
-                .map(|(kind, ior, beyond)| Surface::new(&kind, DVec3::ZERO, ior, beyond))
+                .map(|(kind, ior, beyond)| surface(&kind, ior, beyond))
                 .map(|surface| [100.0 * mean_loss(&surface, 100_000), 100.0 * loss(&surface, 1.0, 1_000_000)]);
         let cell = |[mean, normal]: [f64; 2]| format!("{mean:6.2} ({normal:6.2})");
         println!("{roughness:9.1}   {}", entries.map(cell).join("   "));

@@ -30,7 +30,7 @@ pub(crate) struct MapPlacement {
 
 /// Whether an object has an energy map: some triangle of it is a receiver.
 fn is_receiver(scene: &Scene, object: &Object) -> bool {
-    object.materials.iter().any(|&material| scene.materials[material].kind.is_receiver())
+    object.materials.iter().any(|&material| scene.materials[material].is_receiver())
 }
 
 /// Lays out the maps of all receivers.
@@ -50,7 +50,7 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
             let own = chunks.next_if(|chunk| chunk[0].object as usize == index).unwrap_or(&[]);
             layout.map(|layout| {
                 let receivers: Vec<_> =
-                    own.iter().filter(|t| scene.materials[t.material as usize].kind.is_receiver()).copied().collect();
+                    own.iter().filter(|t| scene.materials[t.material as usize].is_receiver()).copied().collect();
                 let placement = MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout };
                 first_texel += placement.layout.texel_count();
                 placement

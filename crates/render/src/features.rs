@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use diacaustic_scene::{MaterialKind, SMOOTH, Scene};
+use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
 use crate::{gpu::Gpu, lights::Lights};
@@ -22,6 +22,10 @@ pub(crate) struct Features {
     distant_lights: bool,
     /// An environment.
     environment: bool,
+    /// Pictures on surfaces.
+    textures: bool,
+    /// Surfaces that rays may pass as if they were not there.
+    holes: bool,
     /// The kind of light that emits photons.
     photon_light_kind: u32,
     /// Whether a guide moves photons.
@@ -35,12 +39,14 @@ impl Features {
         let kinds = || scene.materials.iter().map(|material| &material.kind);
         let shines = |wanted: &[u32]| lights.emitters.iter().any(|emitter| wanted.contains(&emitter.kind()));
         Self {
-            gloss: kinds().any(has_gloss),
+            gloss: scene.materials.iter().any(has_gloss),
             conductors: kinds().any(|kind| matches!(kind, MaterialKind::Conductor { .. })),
             point_lights: shines(&[light_kind::POINT, light_kind::SPOT]),
             surface_lights: shines(&[light_kind::SURFACE]),
             distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
             environment: shines(&[light_kind::ENVIRONMENT]),
+            textures: scene.materials.iter().any(|material| material.textures.any()),
+            holes: scene.materials.iter().any(Material::has_holes),
             photon_light_kind: 0,
             guide: false,
             sightings: false,
@@ -49,7 +55,8 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, guide: bool) -> Self {
-        Self { gloss: self.gloss, conductors: self.conductors, photon_light_kind: kind, guide, ..Self::default() }
+        let Self { gloss, conductors, textures, holes, .. } = self;
+        Self { gloss, conductors, textures, holes, photon_light_kind: kind, guide, ..Self::default() }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -66,6 +73,8 @@ impl Features {
             ("has_surface_lights", f64::from(self.surface_lights)),
             ("has_distant_lights", f64::from(self.distant_lights)),
             ("has_environment", f64::from(self.environment)),
+            ("has_textures", f64::from(self.textures)),
+            ("has_holes", f64::from(self.holes)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("notes_sightings", f64::from(self.sightings)),
@@ -74,8 +83,8 @@ impl Features {
     }
 }
 
-fn has_gloss(kind: &MaterialKind) -> bool {
-    match *kind {
+fn has_gloss(material: &Material) -> bool {
+    match material.kind {
         MaterialKind::Coated { .. } | MaterialKind::MetallicRoughness { .. } => true,
         MaterialKind::Dielectric { roughness, .. } | MaterialKind::Conductor { roughness, .. } => roughness >= SMOOTH,
         MaterialKind::Diffuse { .. }

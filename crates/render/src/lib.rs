@@ -43,6 +43,7 @@ mod renderer;
 mod scene_buffers;
 mod self_test;
 mod statistics;
+mod texture_records;
 
 pub use aim::Emission;
 pub use display_pass::RenderParams;

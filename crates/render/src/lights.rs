@@ -2,11 +2,11 @@
 
 use std::f32::consts::PI;
 
-use diacaustic_scene::{Light, LightKind, MaterialKind, RadianceMap, Scene};
+use diacaustic_scene::{Light, LightKind, Material, MaterialKind, RadianceMap, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::light_kind;
 use diacaustic_surface::{BoundingSphere, WorldTriangle};
-use glam::Vec3;
+use glam::{DVec3, Vec2, Vec3};
 
 use crate::environment::EnvironmentRecord;
 
@@ -161,8 +161,14 @@ impl Lights {
         emitter.record.count = own.len() as u32;
         emitter.record.extent = total as f32;
         let strength = Vec3::from(emitter.record.strength);
-        emitter.flux = strength * (PI * total as f32);
-        emitter.peak = strength.max_element() * total as f32;
+        let (mean, most) = match scene.materials.get(material as usize) {
+            Some(material) if material.textures.any() || material.has_holes() => {
+                emission_factors(material, &own, &areas)
+            }
+            _ => (Vec3::ONE, Vec3::ONE),
+        };
+        emitter.flux = strength * mean * (PI * total as f32);
+        emitter.peak = (strength * most).max_element() * total as f32;
         emitter.bounds = Some(BoundingSphere::around(own.iter().flat_map(|(_, t)| t.corners)));
         emitter.media = media_keys(scene, own[0].1.corners[0]);
     }
@@ -200,12 +206,45 @@ impl Lights {
     }
 }
 
+/// Points at which a picture's emission is looked up for its mean, over all triangles.
+const EMISSION_POINTS: f64 = 262_144.0;
+/// The share of its greatest value that a picture's mean emission is at least taken for: points may miss what is small and bright.
+const LEAST_MEAN_EMISSION: f32 = 1e-4;
+
+/// What pictures and holes make of a surface's emission: the mean over its area, by points of Roberts' R₂ sequence, and the most there can be.
+fn emission_factors(material: &Material, triangles: &[(usize, &WorldTriangle)], areas: &[f64]) -> (Vec3, Vec3) {
+    let total: f64 = areas.iter().sum();
+    let mut sum = DVec3::ZERO;
+    for ((_, triangle), area) in triangles.iter().zip(areas) {
+        let uvs = triangle.uvs.unwrap_or_default();
+        let points = (EMISSION_POINTS * area / total).ceil() as u32;
+        let of_triangle: DVec3 = (0..points).map(|i| emission_factor(material, uv_of_point(uvs, i)).as_dvec3()).sum();
+        sum += of_triangle * (area / f64::from(points));
+    }
+    let most = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.image.most().truncate());
+    ((sum / total).as_vec3().max(LEAST_MEAN_EMISSION * most), most)
+}
+
+/// Point `i` of a sequence that fills a triangle evenly.
+fn uv_of_point([a, b, c]: [Vec2; 3], i: u32) -> Vec2 {
+    let u =
+        [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|step: f64| (0.5 + step * f64::from(i)).fract() as f32);
+    let folded = if u[0] + u[1] > 1.0 { [1.0 - u[0], 1.0 - u[1]] } else { u };
+    a + folded[0] * (b - a) + folded[1] * (c - a)
+}
+
+/// The factor on a surface's emission at texture coordinates.
+fn emission_factor(material: &Material, uv: Vec2) -> Vec3 {
+    let picture = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
+    picture * material.opacity_at(uv)
+}
+
 /// The materials that shine and that an object shows, with the names of their emitters.
 pub(crate) fn emissive_materials(scene: &Scene) -> Vec<(usize, String)> {
     let is_shown = |index: usize| scene.objects.iter().any(|object| object.materials.contains(&index));
     let materials = scene.materials.iter().enumerate();
     materials
-        .filter(|(index, material)| material.emission != Vec3::ZERO && is_shown(*index))
+        .filter(|(index, material)| material.is_emissive() && is_shown(*index))
         .map(|(index, material)| (index, format!("material {}", material.name)))
         .collect()
 }

@@ -16,11 +16,13 @@ const FRESNEL_STEPS: usize = 4096;
 pub(crate) fn material(scene: &Scene, index: usize) -> shaders::Material {
     let source = &scene.materials[index];
     let kind = &source.kind;
-    let caster = if kind.is_caster() { kinds::CASTER } else { 0 };
-    let receiver = if kind.is_receiver() { kinds::RECEIVER } else { 0 };
-    let scattering = scattering(kind);
+    let caster = if source.is_caster() { kinds::CASTER } else { 0 };
+    let receiver = if source.is_receiver() { kinds::RECEIVER } else { 0 };
+    let is_textured = source.textures.any();
+    let textured = if is_textured { kinds::TEXTURED } else { 0 };
+    let scattering = if is_textured { before_pictures(kind) } else { scattering(kind) };
     shaders::Material {
-        kind: scattering.kind | caster | receiver,
+        kind: scattering.kind | caster | receiver | textured,
         medium: medium_key(scene, index),
         emission: source.emission.into(),
         ..scattering
@@ -84,6 +86,29 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
     }
 }
 
+/// What `shaders/texture/surface.wgsl` derives the rest from at every point: colour, roughness and share of metal as they are.
+fn before_pictures(kind: &MaterialKind) -> shaders::Material {
+    let derived = scattering(kind);
+    match *kind {
+        MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
+            shaders::Material { gloss: roughness, ..derived }
+        }
+        MaterialKind::Coated { albedo, ior, roughness } => shaders::Material {
+            base: albedo.into(),
+            extinction: [reflectance_from_within(f64::from(ior)) as f32; 3],
+            gloss: roughness,
+            ..derived
+        },
+        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+            shaders::Material { base: base_color.into(), extinction: [metallic; 3], gloss: roughness, ..derived }
+        }
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::Phong { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::ThinWalled { .. } => derived,
+    }
+}
+
 /// Width α of the microfacets' distribution; 0 for a smooth surface.
 fn width(roughness: f32) -> f32 {
     if roughness < SMOOTH { 0.0 } else { roughness * roughness }
@@ -91,10 +116,13 @@ fn width(roughness: f32) -> f32 {
 
 /// ρ* of a base of albedo ρ under a coat: ρ/(n²(1 − ρF_in)).
 fn under_coat(albedo: Vec3, ior: f32) -> Vec3 {
-    let n = f64::from(ior);
-    let outside = mean_reflectance(n);
-    let inside = 1.0 - (1.0 - outside) / (n * n);
-    albedo / ((n * n) as f32 * (Vec3::ONE - albedo * inside as f32))
+    let inside = reflectance_from_within(f64::from(ior)) as f32;
+    albedo / (ior * ior * (Vec3::ONE - albedo * inside))
+}
+
+/// F_in: what a coat of index n reflects of the light that its base sends out.
+fn reflectance_from_within(n: f64) -> f64 {
+    1.0 - (1.0 - mean_reflectance(n)) / (n * n)
 }
 
 /// 2∫F(μ)μ dμ over 0 … 1: the reflectance from outside for light from everywhere.

@@ -59,7 +59,11 @@ impl QueryPass {
     pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
         let rays_layout = gpu.layout("query rays", wgpu::ShaderStages::COMPUTE, &[Binding::Read]);
         let hits_layout = gpu.layout("query hits", wgpu::ShaderStages::COMPUTE, &[Binding::ReadWrite]);
-        let pipeline = gpu.compute_pipeline(INTERSECT, &[scene_layout, &rays_layout, &hits_layout]);
+        let pipeline = {
+            // Queries ask for the surface, whole or not.
+            let layouts = [scene_layout, &rays_layout, &hits_layout];
+            gpu.specialised_pipeline(INTERSECT, &layouts, &[("has_holes", 0.0)])
+        };
         Self { rays_layout, hits_layout, pipeline }
     }
 

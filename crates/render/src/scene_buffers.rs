@@ -1,7 +1,8 @@
 //! The scene on the device: bind group 0 of both passes.
 
-use diacaustic_scene::{LightKind, Scene};
+use diacaustic_scene::{LightKind, Material, Scene};
 use diacaustic_shaders as shaders;
+use diacaustic_shaders::triangle_flag;
 use diacaustic_surface::WorldTriangle;
 use glam::Vec2;
 
@@ -12,10 +13,11 @@ use crate::{
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
     material_records::material,
+    texture_records::TextureRecords,
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 8] = [Binding::Records; 8];
+pub(crate) const BINDINGS: [Binding; 12] = [Binding::Records; 12];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -25,6 +27,10 @@ const MATERIALS: Purpose = Purpose { what: "the scene's materials", remedy: "use
 const LIGHTS: Purpose = Purpose { what: "the scene's lights", remedy: "use fewer lights" };
 const EMITTING_TRIANGLES: Purpose = Purpose { what: "the triangles that shine", remedy: "use fewer triangles" };
 const ENVIRONMENT: Purpose = Purpose { what: "the environment's picture", remedy: "use a smaller picture" };
+
+const COORDINATES: Purpose = Purpose { what: "the triangles' texture coordinates", remedy: "use fewer triangles" };
+const TEXTURES: Purpose = Purpose { what: "the list of textures", remedy: "use fewer textures" };
+const TEXELS: Purpose = Purpose { what: "the textures' pictures", remedy: "use smaller pictures" };
 
 /// The scene's records, and what they weigh.
 #[derive(Debug)]
@@ -37,7 +43,7 @@ impl SceneBuffers {
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, host: &HostScene) -> Result<Self, Error> {
         let HostScene { bvh, lights, placements: maps, .. } = host;
         let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
-        let triangles: Vec<_> = bvh.triangles.iter().map(triangle).collect();
+        let triangles: Vec<_> = bvh.triangles.iter().map(|t| triangle(scene, t)).collect();
         let corners: Vec<_> = bvh
             .triangles
             .iter()
@@ -50,6 +56,7 @@ impl SceneBuffers {
         }
         let surfaces = scene.lights.iter().enumerate();
         materials.extend(surfaces.map(|(number, light)| light_surface(lights, number, &light.kind)));
+        let pictures = TextureRecords::new(scene, &bvh.triangles);
         let textures = [
             gpu.records(NODES, nodes)?,
             gpu.records(TRIANGLES, &triangles)?,
@@ -59,6 +66,10 @@ impl SceneBuffers {
             gpu.records(LIGHTS, &lights.records)?,
             gpu.records(EMITTING_TRIANGLES, &lights.triangles)?,
             gpu.records(ENVIRONMENT, &lights.environment)?,
+            gpu.records(COORDINATES, &pictures.coordinates)?,
+            gpu.records(TEXTURES, &pictures.materials)?,
+            gpu.records(TEXTURES, &pictures.textures)?,
+            gpu.records(TEXELS, &pictures.texels)?,
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
@@ -67,14 +78,17 @@ impl SceneBuffers {
     }
 }
 
-fn triangle(t: &WorldTriangle) -> shaders::Triangle {
+fn triangle(scene: &Scene, t: &WorldTriangle) -> shaders::Triangle {
+    // The surfaces of lights have materials beyond the scene's, and no holes.
+    let has_holes = scene.materials.get(t.material as usize).is_some_and(Material::has_holes);
+    let flag = |applies: bool, flag: u32| if applies { flag } else { 0 };
     shaders::Triangle {
         corner: t.corners[0].into(),
         object: t.object,
         edge_1: (t.corners[1] - t.corners[0]).into(),
         material: t.material,
         edge_2: (t.corners[2] - t.corners[0]).into(),
-        interpolate_normals: u32::from(t.normals.is_some()),
+        flags: flag(t.normals.is_some(), triangle_flag::SMOOTH) | flag(has_holes, triangle_flag::HAS_HOLES),
     }
 }
 

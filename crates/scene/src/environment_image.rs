@@ -69,7 +69,7 @@ fn decode(reader: impl BufRead + Seek, format: Format) -> Result<RadianceMap, St
 }
 
 /// What the numbers of a Radiance file are divided by to be radiance.
-fn radiance_divisor(header: &HdrMetadata) -> Result<Vec3, String> {
+pub(crate) fn radiance_divisor(header: &HdrMetadata) -> Result<Vec3, String> {
     let correction = header.color_correction.map_or(Vec3::ONE, Vec3::from);
     let divisor = correction * header.exposure.unwrap_or(1.0);
     if divisor.is_finite() && divisor.cmpgt(Vec3::ZERO).all() {

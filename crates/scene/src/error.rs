@@ -158,7 +158,7 @@ pub enum Error {
         /// What is wrong with the file.
         cause: Box<Error>,
     },
-    /// An environment image cannot be used.
+    /// A picture of a surface or of an environment cannot be used.
     #[error("{}: the image {problem}", path.display())]
     Image {
         /// The file.

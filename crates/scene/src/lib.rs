@@ -34,7 +34,7 @@
 //! let loaded = diacaustic_scene::parse_scene(text, Path::new("."), "ball.toml")?;
 //! assert!(loaded.warnings.is_empty());
 //! assert_eq!(loaded.scene.objects[1].name, "floor");
-//! assert!(loaded.scene.materials[loaded.scene.objects[0].material_of(0)].kind.is_caster());
+//! assert!(loaded.scene.materials[loaded.scene.objects[0].material_of(0)].is_caster());
 //!
 //! let error = diacaustic_scene::parse_scene(&text.replace("ior", "iro"), Path::new("."), "ball.toml").unwrap_err();
 //! assert!(error.to_string().contains("[materials.glass]: unknown key \"iro\"; did you mean \"ior\"?"));
@@ -42,6 +42,7 @@
 //! ```
 
 mod camera;
+mod dispersion;
 mod environment_image;
 mod error;
 mod light;
@@ -55,10 +56,14 @@ mod radiance_map;
 mod read_toml;
 mod scene;
 mod solid;
+mod spectrum;
 mod substances;
+mod texture;
+mod texture_image;
 mod validate;
 
 pub use camera::Camera;
+pub use dispersion::{Dispersion, STATED_WAVELENGTH};
 pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
 pub use light::{Light, LightKind};
@@ -69,4 +74,9 @@ pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
 pub use read_toml::{LoadedScene, load_scene, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
+pub use spectrum::{
+    LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,
+};
 pub use substances::{SUBSTANCES, Substance, substance};
+pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};
+pub use texture_image::{ColorSpace, Picture, load_texture};

@@ -1,6 +1,8 @@
 //! What surfaces do to light.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
+
+use crate::{Dispersion, Texture, Textures};
 
 /// A named material.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +14,12 @@ pub struct Material {
     /// Radiance that the surface's front sends in each direction (Lambertian), W/(m² sr) per channel, ≥ 0. Dielectrics and
     /// thin-walled glass have none.
     pub emission: Vec3,
+    /// Share of the light that meets the surface at all, 0 to 1; the rest passes as if it were not there. 1 for dielectrics.
+    pub opacity: f32,
+    /// Where set, opacity is 1 where it is at least this great, else 0.
+    pub opacity_cutoff: Option<f32>,
+    /// Pictures that modulate it.
+    pub textures: Textures,
 }
 
 /// The scattering models, as `docs/materials.md` defines them. Colours are linear Rec. 709, per channel. `roughness` is that of
@@ -51,8 +59,10 @@ pub enum MaterialKind {
     },
     /// A dielectric: the object's closed surface bounds a volume of this index.
     Dielectric {
-        /// Index of refraction, > 0; that of air is 1.
+        /// Index of refraction at [`STATED_WAVELENGTH`](crate::STATED_WAVELENGTH), > 0; that of air is 1.
         ior: f32,
+        /// How the index changes with the wavelength.
+        dispersion: Dispersion,
         /// Factor on light at each crossing of the boundary, 0 to 1.
         tint: Vec3,
         /// Absorption coefficient σ of the interior, 1/m, ≥ 0 (Beer–Lambert).
@@ -96,25 +106,79 @@ pub const SMOOTH: f32 = 0.03;
 /// Below, it is mirror-like and casts light on.
 pub const GLOSSY: f32 = 0.3;
 
-impl MaterialKind {
+impl Material {
+    /// A material that neither shines nor shows pictures.
+    pub fn new(name: impl Into<String>, kind: MaterialKind) -> Self {
+        let textures = Textures::default();
+        Self { name: name.into(), kind, emission: Vec3::ZERO, opacity: 1.0, opacity_cutoff: None, textures }
+    }
+
     /// Whether the material passes light on along one direction or a narrow lobe: a *caster*, whose light the energy maps own.
     ///
     /// This and [`is_receiver`](Self::is_receiver) are the one place where this is decided, for both passes. A material can be both.
+    /// Where a picture makes the roughness or the share of metal, its extreme decides for the whole material.
     pub fn is_caster(&self) -> bool {
-        match *self {
-            Self::Mirror { .. } | Self::Dielectric { .. } | Self::ThinWalled { .. } | Self::Conductor { .. } => true,
-            Self::Coated { roughness, .. } => roughness < GLOSSY,
-            Self::MetallicRoughness { metallic, roughness, .. } => metallic == 1.0 || roughness < GLOSSY,
-            Self::Diffuse { .. } | Self::Phong { .. } => false,
+        match self.kind {
+            MaterialKind::Mirror { .. }
+            | MaterialKind::Dielectric { .. }
+            | MaterialKind::ThinWalled { .. }
+            | MaterialKind::Conductor { .. } => true,
+            MaterialKind::Coated { roughness, .. } => self.least_roughness(roughness) < GLOSSY,
+            MaterialKind::MetallicRoughness { metallic, roughness, .. } => {
+                self.least_metallic(metallic) == 1.0 || self.least_roughness(roughness) < GLOSSY
+            }
+            MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => false,
         }
     }
 
     /// Whether the material has a diffuse lobe: a *receiver*, whose object has an energy map.
     pub fn is_receiver(&self) -> bool {
-        match *self {
-            Self::Diffuse { .. } | Self::Phong { .. } | Self::Coated { .. } => true,
-            Self::MetallicRoughness { metallic, .. } => metallic < 1.0,
-            Self::Mirror { .. } | Self::Dielectric { .. } | Self::ThinWalled { .. } | Self::Conductor { .. } => false,
+        match self.kind {
+            MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } | MaterialKind::Coated { .. } => true,
+            MaterialKind::MetallicRoughness { metallic, .. } => self.least_metallic(metallic) < 1.0,
+            MaterialKind::Mirror { .. }
+            | MaterialKind::Dielectric { .. }
+            | MaterialKind::ThinWalled { .. }
+            | MaterialKind::Conductor { .. } => false,
         }
     }
+
+    /// Whether rays may pass as if the surface were not there.
+    pub fn has_holes(&self) -> bool {
+        let least = least(&self.textures.opacity, self.opacity);
+        self.opacity_cutoff.map_or(least < 1.0, |cutoff| least < cutoff)
+    }
+
+    /// Share of the light that meets the surface at texture coordinates `uv`.
+    pub fn opacity_at(&self, uv: Vec2) -> f32 {
+        let opacity = self.opacity * self.textures.opacity.as_ref().map_or(1.0, |texture| texture.number_at(uv));
+        match self.opacity_cutoff {
+            Some(cutoff) => f32::from(u8::from(opacity >= cutoff)),
+            None => opacity,
+        }
+    }
+
+    /// Whether some point of the surface shines: emission, its picture and opacity are above 0 somewhere.
+    pub fn is_emissive(&self) -> bool {
+        let brightest = self.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.image.most().truncate());
+        self.emission * brightest != Vec3::ZERO && most(&self.textures.opacity, self.opacity) > 0.0
+    }
+
+    fn least_roughness(&self, factor: f32) -> f32 {
+        least(&self.textures.roughness, factor)
+    }
+
+    fn least_metallic(&self, factor: f32) -> f32 {
+        least(&self.textures.metallic, factor)
+    }
+}
+
+/// The greatest value that a number has on a surface.
+fn most(texture: &Option<Texture>, factor: f32) -> f32 {
+    factor * texture.as_ref().map_or(1.0, |texture| texture.image.most()[texture.channel])
+}
+
+/// The least value that a number has on a surface.
+fn least(texture: &Option<Texture>, factor: f32) -> f32 {
+    factor * texture.as_ref().map_or(1.0, |texture| texture.image.least()[texture.channel])
 }

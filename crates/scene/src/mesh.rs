@@ -12,7 +12,7 @@ pub struct Mesh {
     pub positions: Vec<Vec3>,
     /// Unit vertex normals, one for each position, or empty for flat facets.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates, one for each position, or empty.
+    /// Texture coordinates, one for each position, or empty. (0, 0) is a picture's lower left corner, (1, 1) its upper right one.
     pub uvs: Vec<Vec2>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
@@ -25,11 +25,11 @@ pub struct Mesh {
 }
 
 /// How a mesh's surface is mapped to the plane of its energy map.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Chart {
-    /// The texture coordinates, which are known not to overlap and are in metres along the surface
-    /// (the natural map of a rectangle or a box).
-    Natural,
+    /// A place for each position, which are known not to overlap and are in metres along the surface (the natural map of a
+    /// rectangle or a box).
+    Natural(Vec<Vec2>),
     /// The texture coordinates if they do not overlap, else a planar projection.
     #[default]
     Automatic,

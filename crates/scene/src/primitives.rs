@@ -61,16 +61,18 @@ impl Mesh {
 
     /// A rectangle of two triangles about `center` (metres), with its edges as full, perpendicular vectors (metres).
     ///
-    /// Its normal is along `edge_u` × `edge_v`, its texture coordinates are the metres along the two edges.
+    /// Its normal is along `edge_u` × `edge_v`, its texture coordinates go from 0 to 1 along the two edges.
     pub fn rectangle(center: Vec3, edge_u: Vec3, edge_v: Vec3) -> Self {
-        let mut mesh = Self { chart: Chart::Natural, ..Self::default() };
-        mesh.push_rectangle(center - 0.5 * (edge_u + edge_v), edge_u, edge_v, Vec2::ZERO);
+        let mut mesh = Self::default();
+        let place = mesh.push_rectangle(center - 0.5 * (edge_u + edge_v), edge_u, edge_v, Vec2::ZERO);
+        mesh.chart = Chart::Natural(place.to_vec());
         mesh
     }
 
     /// A box of 12 triangles between two corners (metres), `min` less than `max` along each axis.
     ///
-    /// Closed, with flat faces. Its texture coordinates are metres on one sheet, on which the six faces lie apart.
+    /// Closed, with flat faces. On each face texture coordinates go from 0 to 1, upright on the four sides; on the energy map the
+    /// faces lie apart.
     pub fn cuboid(min: Vec3, max: Vec3) -> Self {
         let [x, y, z] = (max - min).to_array();
         let (along_x, along_y, along_z) = (Vec3::X * x, Vec3::Y * y, Vec3::Z * z);
@@ -84,22 +86,24 @@ impl Mesh {
             (min + along_y + along_z, along_x, -along_z, Vec2::new(0.0, second_row)),
             (min, along_x, along_z, Vec2::new(x + gap, second_row)),
         ];
-        let mut mesh = Self { chart: Chart::Natural, ..Self::default() };
-        for (corner, edge_u, edge_v, uv) in faces {
-            mesh.push_rectangle(corner, edge_u, edge_v, uv);
-        }
+        let mut mesh = Self::default();
+        let places = faces.map(|(corner, edge_u, edge_v, place)| mesh.push_rectangle(corner, edge_u, edge_v, place));
+        mesh.chart = Chart::Natural(places.concat());
         mesh.weld_to_corners(min, max);
         mesh
     }
 
-    fn push_rectangle(&mut self, corner: Vec3, edge_u: Vec3, edge_v: Vec3, uv: Vec2) {
+    /// Adds a rectangle; returns the places of its corners on a map where its first corner is at `place`.
+    fn push_rectangle(&mut self, corner: Vec3, edge_u: Vec3, edge_v: Vec3, place: Vec2) -> [Vec2; 4] {
         let first = self.positions.len() as u32;
         let size = Vec2::new(edge_u.length(), edge_v.length());
         let normal = edge_u.cross(edge_v).normalize_or_zero();
         self.positions.extend([corner, corner + edge_u, corner + edge_u + edge_v, corner + edge_v]);
         self.normals.extend([normal; 4]);
-        self.uvs.extend([uv, uv + size.with_y(0.0), uv + size, uv + size.with_x(0.0)]);
         self.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        let square = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        self.uvs.extend(square);
+        square.map(|corner| place + corner * size)
     }
 
     /// Replaces rounded sums by the exact corners, so that the faces of a box weld.
@@ -128,13 +132,15 @@ mod tests {
         (0..mesh.triangles.len()).map(|t| 0.5 * mesh.double_area_normal(t).length()).sum()
     }
 
-    fn uv_corners(mesh: &Mesh, triangle: usize) -> [Vec2; 3] {
-        mesh.triangles[triangle].map(|v| mesh.uvs[v as usize])
+    /// The corners of a triangle on the map.
+    fn map_corners(mesh: &Mesh, triangle: usize) -> [Vec2; 3] {
+        let places = if let Chart::Natural(places) = &mesh.chart { places } else { &mesh.uvs };
+        mesh.triangles[triangle].map(|v| places[v as usize])
     }
 
     /// Twice the signed area of a triangle on the map.
-    fn double_uv_area(mesh: &Mesh, triangle: usize) -> f32 {
-        let [a, b, c] = uv_corners(mesh, triangle);
+    fn double_map_area(mesh: &Mesh, triangle: usize) -> f32 {
+        let [a, b, c] = map_corners(mesh, triangle);
         (b - a).perp_dot(c - a)
     }
 
@@ -151,9 +157,9 @@ mod tests {
 
     fn assert_chart_is_one_to_one(mesh: &Mesh) {
         for first in 0..mesh.triangles.len() {
-            assert!(double_uv_area(mesh, first) > 0.0, "triangle {first} is mirrored or empty on the map");
+            assert!(double_map_area(mesh, first) > 0.0, "triangle {first} is mirrored or empty on the map");
             for second in 0..first {
-                assert!(!overlap(uv_corners(mesh, first), uv_corners(mesh, second)), "{first} and {second} overlap");
+                assert!(!overlap(map_corners(mesh, first), map_corners(mesh, second)), "{first} and {second} overlap");
             }
         }
     }
@@ -197,7 +203,8 @@ mod tests {
     fn rectangle_is_metric() {
         let mesh = Mesh::rectangle(Vec3::new(0.0, 1.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 0.0, -2.0));
         assert_eq!(mesh.normals, [Vec3::Y; 4]);
-        assert_eq!(mesh.uvs[2], Vec2::new(3.0, 2.0));
+        assert_eq!(mesh.uvs[2], Vec2::ONE);
+        assert_eq!(map_corners(&mesh, 0)[2], Vec2::new(3.0, 2.0));
         assert_eq!(mesh.positions[0], Vec3::new(-1.5, 1.0, 1.0));
         assert_eq!(area(&mesh), 6.0);
         assert_eq!(mesh.open_edges(), 4);
@@ -212,7 +219,7 @@ mod tests {
         assert!((area(&mesh) - 2.0 * (1.4 * 0.7 + 1.4 * 2.4 + 0.7 * 2.4)).abs() < 1e-5);
         for triangle in 0..12 {
             let on_surface = mesh.double_area_normal(triangle).length();
-            assert!((double_uv_area(&mesh, triangle) - on_surface).abs() < 1e-5);
+            assert!((double_map_area(&mesh, triangle) - on_surface).abs() < 1e-5);
         }
         assert_chart_is_one_to_one(&mesh);
     }

@@ -3,7 +3,9 @@
 mod lights;
 mod materials;
 mod objects;
+mod refraction;
 mod table;
+mod textures;
 
 use std::{fs, path::Path};
 
@@ -11,7 +13,7 @@ use glam::Vec3;
 
 use self::{
     lights::LightReader,
-    materials::read_material,
+    materials::MaterialReader,
     objects::ObjectReader,
     table::{Document, Table},
 };
@@ -76,8 +78,7 @@ impl<'d> Sections<'d> {
 
     fn read(&self, base_dir: &Path) -> Result<(Scene, Vec<Warning>), Error> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
-        let read_named = |(name, table): &(String, Table<'_>)| read_material(name, table);
-        let materials = self.materials.iter().map(read_named).collect::<Result<_, _>>()?;
+        let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
         let mut scene = Scene {
             background: color("background")?,
             ambient: color("ambient")?,
@@ -161,6 +162,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "guiding",
         "map_size",
         "filter",
+        "wavelength",
     ])?;
     let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
@@ -176,6 +178,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         guiding: table.get("guiding").map_or(Ok(default.guiding), |entry| entry.boolean())?,
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
+        wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
     })
 }
 

@@ -77,6 +77,9 @@ pub struct RenderSettings {
     pub map_size: Option<u32>,
     /// The pixel's reconstruction filter.
     pub filter: PixelFilter,
+    /// The wavelength, nm, of the only light that there is; all of it if none. Pictures and maps are then gray: how much of this
+    /// wavelength there is, against 1 for white of radiance 1.
+    pub wavelength: Option<f32>,
 }
 
 /// The pixel's reconstruction filter.
@@ -123,6 +126,7 @@ impl Default for RenderSettings {
             guiding: true,
             map_size: None,
             filter: PixelFilter::default(),
+            wavelength: None,
         }
     }
 }

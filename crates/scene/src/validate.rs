@@ -4,6 +4,7 @@ mod at;
 mod lights;
 mod materials;
 mod meshes;
+mod textures;
 
 use std::{collections::HashMap, ops::Bound};
 
@@ -13,7 +14,10 @@ use self::{
     at::{At, above, is_in_reach},
     meshes::check_mesh,
 };
-use crate::{Camera, Error, LightKind, Object, OutputSettings, RenderSettings, Scene, Subject, Warning};
+use crate::{
+    Camera, Error, LONGEST_WAVELENGTH, LightKind, Material, Object, OutputSettings, RenderSettings,
+    SHORTEST_WAVELENGTH, Scene, Subject, Warning,
+};
 
 /// The least sine of the angle between the view and what is up.
 const LEAST_UP_SINE: f32 = 1e-4;
@@ -60,6 +64,7 @@ impl Scene {
             })?;
             check_mesh(&object.mesh).map_err(|problem| at.error("mesh", problem))?;
             self.check_object_materials(&at, object)?;
+            self.check_texture_coordinates(&at, object)?;
             check_placement(&at, object)?;
         }
         Ok(())
@@ -76,7 +81,7 @@ impl Scene {
         }
         let Some(map_size) = object.map_size else { return Ok(()) };
         at.number("map_size", map_size, 2..=8192, "from 2 to 8192")?;
-        let is_receiver = |index: &usize| self.materials[*index].kind.is_receiver();
+        let is_receiver = |index: &usize| self.materials[*index].is_receiver();
         at.require(object.materials.iter().any(is_receiver), "map_size", || {
             "is set, but the object is of glass, a mirror or metal, and only objects with a diffuse share have an energy \
              map; leave it out"
@@ -87,10 +92,9 @@ impl Scene {
     /// Why no caustic can form, if none can.
     fn caustic_warnings(&self) -> Vec<Warning> {
         let mut materials = self.objects.iter().flat_map(|object| &object.materials).map(|i| &self.materials[*i]);
-        let has_caster = materials.clone().any(|material| material.kind.is_caster());
-        let has_receiver = materials.clone().any(|material| material.kind.is_receiver());
-        let has_light = self.lights.iter().any(|light| !light.kind.is_dark())
-            || materials.any(|material| material.emission != Vec3::ZERO);
+        let has_caster = materials.clone().any(|material| material.is_caster());
+        let has_receiver = materials.clone().any(|material| material.is_receiver());
+        let has_light = self.lights.iter().any(|light| !light.kind.is_dark()) || materials.any(Material::is_emissive);
         let is_dark = self.background == Vec3::ZERO && self.ambient == Vec3::ZERO;
         let findings = [
             (!has_caster, Warning::NoCaster),
@@ -155,6 +159,10 @@ fn check_settings(settings: &RenderSettings) -> Result<(), Error> {
     })?;
     at.number("max_depth", settings.max_depth, 1..=1000, "from 1 to 1000")?;
     at.number("max_bounces", settings.max_bounces, 0..=1000, "from 0 to 1000")?;
+    if let Some(wavelength) = settings.wavelength {
+        let range = SHORTEST_WAVELENGTH as f32..=LONGEST_WAVELENGTH as f32;
+        at.number("wavelength", wavelength, range, "from 380 to 780 (nm)")?;
+    }
     settings.map_size.map_or(Ok(()), |map_size| at.number("map_size", map_size, 2..=8192, "from 2 to 8192"))
 }
 

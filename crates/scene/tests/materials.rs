@@ -2,7 +2,7 @@
 
 use std::{collections::HashSet, fs, path::Path};
 
-use diacaustic_scene::{METALS, Material, MaterialKind, SUBSTANCES, metal, parse_scene, substance};
+use diacaustic_scene::{Dispersion, METALS, Material, MaterialKind, SUBSTANCES, metal, parse_scene, substance};
 use glam::Vec3;
 
 fn scene(material: &str) -> String {
@@ -52,13 +52,20 @@ fn every_type_is_read_with_all_keys() {
     ];
     for (keys, kind) in cases {
         let read = material(&format!("{keys}\nemission = [7, 8, 9]"));
-        assert_eq!(read, Material { name: "m".to_owned(), kind, emission: Vec3::new(7.0, 8.0, 9.0) });
+        assert_eq!(read, Material { emission: Vec3::new(7.0, 8.0, 9.0), ..Material::new("m", kind) });
     }
     let dielectric =
         "type = 'dielectric'\nior = 1.4\ntint = [0.2, 0.4, 0.6]\nabsorption = 2\nroughness = 0.5\npriority = -3";
     assert_eq!(
         material(dielectric).kind,
-        MaterialKind::Dielectric { ior: 1.4, tint: color, absorption: Vec3::splat(2.0), roughness, priority: -3 }
+        MaterialKind::Dielectric {
+            ior: 1.4,
+            dispersion: Dispersion::None,
+            tint: color,
+            absorption: Vec3::splat(2.0),
+            roughness,
+            priority: -3
+        }
     );
     let thin_walled = "type = 'thin_walled'\nior = 1.4\ntint = [0.2, 0.4, 0.6]";
     assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color });
@@ -73,7 +80,14 @@ fn omitted_keys_have_defaults() {
         ),
         (
             "type = 'dielectric'\nior = 2",
-            MaterialKind::Dielectric { ior: 2.0, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 },
+            MaterialKind::Dielectric {
+                ior: 2.0,
+                dispersion: Dispersion::None,
+                tint: Vec3::ONE,
+                absorption: Vec3::ZERO,
+                roughness: 0.0,
+                priority: 0,
+            },
         ),
         ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }),
         ("type = 'coated'\nalbedo = 1", MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 }),
@@ -83,23 +97,29 @@ fn omitted_keys_have_defaults() {
         ),
     ];
     for (keys, kind) in cases {
-        assert_eq!(material(keys), Material { name: "m".to_owned(), kind, emission: Vec3::ZERO });
+        assert_eq!(material(keys), Material::new("m", kind));
     }
 }
 
 #[test]
 fn names_stand_for_measured_data() {
-    let dielectric =
-        |ior, absorption| MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption, roughness: 0.0, priority: 0 };
+    let dielectric = |ior, dispersion, absorption| MaterialKind::Dielectric {
+        ior,
+        dispersion,
+        tint: Vec3::ONE,
+        absorption,
+        roughness: 0.0,
+        priority: 0,
+    };
     for known in SUBSTANCES {
         let read = material(&format!("type = 'dielectric'\nsubstance = '{}'", known.name)).kind;
-        assert_eq!(read, dielectric(known.ior, known.absorption));
+        assert_eq!(read, dielectric(known.ior, known.dispersion, known.absorption));
     }
     let amber = substance("amber").unwrap();
     assert!(amber.absorption.cmpgt(Vec3::ZERO).all());
     assert_eq!(
         material("type = 'dielectric'\nsubstance = 'amber'\nabsorption = 0").kind,
-        dielectric(amber.ior, Vec3::ZERO)
+        dielectric(amber.ior, amber.dispersion, Vec3::ZERO)
     );
     assert_eq!(
         material("type = 'thin_walled'\nsubstance = 'amber'").kind,
@@ -165,7 +185,7 @@ fn faults_are_named() {
         ),
         (
             "type = 'thin_walled'\nroughness = 0.5",
-            "[materials.m]: unknown key \"roughness\"; known keys: type, ior, substance, tint",
+            "[materials.m]: unknown key \"roughness\"; known keys: type, tint, normal, opacity, ior, substance",
         ),
         (
             "type = 'conductor'",
@@ -198,5 +218,49 @@ fn faults_are_named() {
     for (keys, message) in cases {
         let found = error(keys);
         assert!(found.starts_with(message), "{found}\nmust start with\n{message}");
+    }
+}
+
+#[test]
+fn indices_over_the_wavelength_are_read() {
+    let of = |keys: &str| {
+        let MaterialKind::Dielectric { ior, dispersion, .. } = material(&format!("type = 'dielectric'\n{keys}")).kind
+        else {
+            panic!("{keys}: not a dielectric");
+        };
+        (ior, dispersion)
+    };
+    assert_eq!(of("ior = 1.5"), (1.5, Dispersion::None));
+    assert_eq!(of("ior = 1.5\nabbe = 40"), (1.5, Dispersion::Abbe(40.0)));
+    assert_eq!(of("ior = 1.5\nabbe = 40\ndispersion = false"), (1.5, Dispersion::None));
+    let (ior, dispersion) = of("cauchy = [1.5, 0.01]");
+    assert!((ior - (1.5 + 0.01 / 0.587_561_8f32.powi(2))).abs() < 1e-6);
+    assert_eq!(dispersion, Dispersion::Cauchy([0.01, 0.0]));
+    assert_eq!(of("cauchy = [1.5, 0.01, 0.001]").1, Dispersion::Cauchy([0.01, 0.001]));
+    let (ior, dispersion) = of("sellmeier = [[1.2, 0.01]]");
+    assert!((ior - (1.0 + 1.2 / (1.0 - 0.01 / 0.587_561_8f32.powi(2))).sqrt()).abs() < 1e-6);
+    assert_eq!(dispersion, Dispersion::Sellmeier([[1.2, 0.01], [0.0; 2], [0.0; 2], [0.0; 2]]));
+    let bk7 = substance("bk7").unwrap();
+    assert_eq!(of("substance = 'bk7'"), (bk7.ior, bk7.dispersion));
+    assert!(!bk7.dispersion.is_none());
+    assert_eq!(of("substance = 'bk7'\ndispersion = false"), (bk7.ior, Dispersion::None));
+}
+
+#[test]
+fn faults_of_indices_are_named() {
+    let of = |keys: &str| error(&format!("type = 'dielectric'\n{keys}"));
+    for (keys, message) in [
+        ("ior = 1.5\ncauchy = [1.5, 0.01]", "and so is ior; leave one of them out"),
+        ("sellmeier = [[1, 0.01]]\nsubstance = 'water'", "and so is substance; leave one of them out"),
+        ("substance = 'water'\nabbe = 50", "and so is substance, which has its dispersion; leave one out"),
+        ("ior = 1.5\nabbe = -1", "abbe is -1; it must be finite and greater than 0"),
+        ("cauchy = [1.5]", "has 1 numbers; it must be [A, B] or [A, B, C], in µm² and µm⁴"),
+        ("sellmeier = []", "has 0 pairs; it must be one to four pairs [B, C], C in µm²"),
+        ("sellmeier = [[1, 0.2]]", "nm; it must be finite and greater than 0"),
+        ("ior = 1.5\nabbe = 40\ndispersion = 1", "expected true or false, found the whole number 1"),
+        ("abbe = 40", "the index of refraction, or \"substance\""),
+    ] {
+        let found = of(keys);
+        assert!(found.contains(message), "{keys}: {found}");
     }
 }

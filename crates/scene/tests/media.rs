@@ -2,7 +2,7 @@
 
 use std::{path::Path, sync::Arc};
 
-use diacaustic_scene::{Mesh, Scene, parse_scene};
+use diacaustic_scene::{Chart, Mesh, Scene, parse_scene};
 use glam::Vec3;
 
 /// A ball of water in a ball of glass in a block of ice, placed by a translation and mirrored.
@@ -55,7 +55,7 @@ fn nested_volumes_all_count() {
 #[test]
 fn overlapping_shells_of_one_object_count_separately() {
     let mut scene = nested();
-    let mut shells = Mesh::cuboid(Vec3::splat(-1.0), Vec3::ONE);
+    let mut shells = Mesh { chart: Chart::Automatic, ..Mesh::cuboid(Vec3::splat(-1.0), Vec3::ONE) };
     let inner = Mesh::cuboid(Vec3::ZERO, Vec3::splat(2.0));
     let first = shells.positions.len() as u32;
     shells.positions.extend(inner.positions);
@@ -72,7 +72,7 @@ fn overlapping_shells_of_one_object_count_separately() {
 fn a_hole_that_faces_inwards_is_not_filled() {
     let mut scene = nested();
     scene.objects.truncate(1);
-    let mut hollow = Mesh::cuboid(Vec3::splat(-1.0), Vec3::ONE);
+    let mut hollow = Mesh { chart: Chart::Automatic, ..Mesh::cuboid(Vec3::splat(-1.0), Vec3::ONE) };
     let hole = Mesh::cuboid(Vec3::splat(-0.5), Vec3::splat(0.5));
     let first = hollow.positions.len() as u32;
     hollow.positions.extend(hole.positions);

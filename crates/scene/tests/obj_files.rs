@@ -2,7 +2,7 @@
 
 use std::{fs, path::Path};
 
-use diacaustic_scene::{Chart, Material, MaterialKind, Mesh, ObjFile, Warning, load_obj, parse_obj};
+use diacaustic_scene::{Chart, Dispersion, Material, MaterialKind, Mesh, ObjFile, Warning, load_obj, parse_obj};
 use glam::{Vec2, Vec3};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -178,7 +178,14 @@ fn mtl_materials_become_the_nearest_kind() {
         MaterialKind::Phong { ambient: Vec3::ZERO, diffuse, specular, shininess: 96.0 }
     );
     assert_eq!(kind("Ks 0.9\nillum 3\n"), MaterialKind::Mirror { reflectance: Vec3::splat(0.9) });
-    let glass = |ior, tint| MaterialKind::Dielectric { ior, tint, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 };
+    let glass = |ior, tint| MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    };
     for illum in [4, 6, 7, 9] {
         assert_eq!(kind(&format!("illum {illum}\n")), glass(1.5, Vec3::ONE));
     }

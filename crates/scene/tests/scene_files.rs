@@ -3,8 +3,8 @@
 use std::{fs, path::Path, sync::Arc};
 
 use diacaustic_scene::{
-    Chart, LightKind, LoadedScene, MaterialKind, PixelFilter, RenderSettings, ToneCurve, Warning, load_scene,
-    parse_scene,
+    Chart, Dispersion, LightKind, LoadedScene, MaterialKind, PixelFilter, RenderSettings, ToneCurve, Warning,
+    load_scene, parse_scene,
 };
 use glam::Vec3;
 
@@ -44,7 +44,7 @@ fn every_key_is_read() {
         background = [0.1, 0.2, 0.3]
         ambient = 0.5
         camera = { position = [1, 2, 3], look_at = [1, 2, 0], up = [1, 0, 0], vertical_fov = 30, aperture_radius = 0.1, focus_distance = 2 }
-        render = { width = 3, height = 4, samples = 5, photons = 6, seed = 7, max_depth = 8, max_bounces = 0, guiding = false, map_size = 9, filter = "blackman-harris" }
+        render = { width = 3, height = 4, samples = 5, photons = 6, seed = 7, max_depth = 8, max_bounces = 0, guiding = false, map_size = 9, filter = "blackman-harris", wavelength = 550 }
         output = { files = ["a.png", "/b/c.EXR"], exposure = -1, tone = "plain" }
         lights = [{ type = "sphere", name = "sun", center = [5, 6, 7], radius = 2, flux = [1, 2, 3] }]
         objects = [{ name = "crate", box = { min = [0, 0, 0], max = [1, 2, 3] }, material = "m", translate = [10, 0, 0], rotate = [90, 0, 90], scale = [1, 2, 1], map_size = 16 }]
@@ -71,6 +71,7 @@ fn every_key_is_read() {
         guiding: false,
         map_size: Some(9),
         filter: PixelFilter::BlackmanHarris,
+        wavelength: Some(550.0),
     };
     assert_eq!(scene.settings, settings);
     assert_eq!(scene.output.files, [Path::new("base/a.png"), Path::new("/b/c.EXR")]);
@@ -85,7 +86,8 @@ fn every_key_is_read() {
     };
     assert_eq!((scene.materials[0].name.as_str(), &scene.materials[0].kind), ("m", &phong));
     let object = &scene.objects[0];
-    assert_eq!((object.name.as_str(), object.map_size, object.mesh.chart), ("crate", Some(16), Chart::Natural));
+    assert_eq!((object.name.as_str(), object.map_size), ("crate", Some(16)));
+    assert!(matches!(object.mesh.chart, Chart::Natural(_)));
     // (0, 1, 0): scaled to (0, 2, 0), about x to (0, 0, 2), about z unmoved, translated.
     assert!(object.world_from_object.transform_point3(Vec3::Y).abs_diff_eq(Vec3::new(10.0, 0.0, 2.0), 1e-6));
     // (1, 0, 0): about x unmoved, about z to (0, 1, 0), translated.
@@ -100,8 +102,14 @@ fn omitted_keys_have_defaults() {
     assert_eq!((scene.camera.up, scene.camera.focus_distance), (Vec3::Y, 13f32.sqrt()));
     assert_eq!(scene.lights[0].name, "light 1");
     assert_eq!(scene.objects.iter().map(|o| o.name.as_str()).collect::<Vec<_>>(), ["sphere", "sphere 2", "floor"]);
-    let glass =
-        MaterialKind::Dielectric { ior: 1.5, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 };
+    let glass = MaterialKind::Dielectric {
+        ior: 1.5,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    };
     assert_eq!(scene.materials[scene.objects[0].material_of(0)].kind, glass);
     assert_eq!(scene.objects[0].mesh.triangles.len(), 16128);
 }

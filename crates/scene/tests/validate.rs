@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use diacaustic_scene::{
-    Camera, Chart, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RadianceMap,
-    RenderSettings, Scene, Subject, Warning,
+    Camera, Chart, Dispersion, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings,
+    RadianceMap, RenderSettings, Scene, Subject, Warning,
 };
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 
@@ -20,13 +20,20 @@ fn object(name: &str, mesh: Mesh, material: usize) -> Object {
 }
 
 fn dielectric(ior: f32) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness: 0.0, priority: 0 }
+    MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness: 0.0,
+        priority: 0,
+    }
 }
 
 fn scene() -> Scene {
     let glass = dielectric(1.5);
     let plaster = MaterialKind::Diffuse { albedo: Vec3::splat(0.8) };
-    let material = |name: &str, kind| Material { name: name.to_owned(), kind, emission: Vec3::ZERO };
+    let material = |name: &str, kind| Material::new(name, kind);
     Scene {
         camera: Camera {
             position: Vec3::new(0.0, 2.0, 3.0),
@@ -145,10 +152,9 @@ fn broken_meshes_are_refused() {
     let flatten = |mesh: &mut Mesh| mesh.positions.iter_mut().for_each(|position| *position *= Vec3::X);
     ends_with(mesh_error(flatten), "mesh has 960 triangles, all of zero area");
     let strip = |mesh: &mut Mesh| {
-        mesh.chart = Chart::Natural;
-        mesh.uvs.clear();
+        mesh.chart = Chart::Natural(vec![Vec2::ZERO]);
     };
-    ends_with(mesh_error(strip), "no texture coordinates; give it some or make the chart automatic");
+    ends_with(mesh_error(strip), "mesh has a natural chart of 1 places; it must have 561, all of them finite");
 }
 
 #[test]
@@ -332,7 +338,14 @@ fn materials_out_of_range_are_refused() {
             "roughness is 1.5; it must be from 0 to 1".to_owned(),
         ),
         (
-            MaterialKind::Dielectric { ior: 1.5, tint: half, absorption: half, roughness: -0.1, priority: 0 },
+            MaterialKind::Dielectric {
+                ior: 1.5,
+                dispersion: Dispersion::None,
+                tint: half,
+                absorption: half,
+                roughness: -0.1,
+                priority: 0,
+            },
             "roughness is -0.1; it must be from 0 to 1".to_owned(),
         ),
         (
@@ -391,7 +404,7 @@ fn only_receivers_have_a_map_size() {
         scene.validate().map(|_| ()).map_err(|error| error.to_string())
     };
     let varnish = MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 };
-    assert!(varnish.is_caster());
+    assert!(Material::new("varnish", varnish.clone()).is_caster());
     assert_eq!(with_map(varnish), Ok(()));
     let metal = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 0.5 };
     assert!(with_map(metal).unwrap_err().starts_with("object \"floor\": map_size is set, but the object is of glass"));

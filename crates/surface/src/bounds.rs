@@ -57,7 +57,7 @@ pub fn scene_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> BoundingSpher
 
 /// The bounding spheres of each object's casting triangles.
 pub fn caster_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<BoundingSphere> {
-    let casts: Vec<bool> = scene.materials.iter().map(|material| material.kind.is_caster()).collect();
+    let casts: Vec<bool> = scene.materials.iter().map(|material| material.is_caster()).collect();
     triangles
         .chunk_by(|a, b| a.object == b.object)
         .filter_map(|object| {

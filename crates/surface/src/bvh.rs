@@ -71,6 +71,7 @@ mod tests {
             .map(|(x, z)| WorldTriangle {
                 corners: [corner(x, z), corner(x, z + 1), corner(x + 1, z)],
                 normals: None,
+                uvs: None,
                 object: 0,
                 triangle: z * side + x,
                 material: 0,

@@ -20,8 +20,8 @@ impl MapLayout {
     /// Lays out an object's mesh with `map_size` texels (at least 2) along the longer side.
     pub fn new(object: &Object, map_size: u32) -> Self {
         let mesh = &object.mesh;
-        let places = match mesh.chart {
-            Chart::Natural => mesh.uvs.clone(),
+        let places = match &mesh.chart {
+            Chart::Natural(places) => places.clone(),
             Chart::Automatic if !mesh.uvs.is_empty() && !uvs_overlap(mesh) => mesh.uvs.clone(),
             Chart::Automatic => planar_projection(mesh, Mat3::from(object.world_from_object.matrix3)),
         };

@@ -21,6 +21,7 @@ pub fn light_surfaces(scene: &Scene) -> Vec<WorldTriangle> {
         let fan = outline.windows(2).skip(1).enumerate().map(|(number, pair)| WorldTriangle {
             corners: [outline[0], pair[0], pair[1]],
             normals: None,
+            uvs: None,
             object: (scene.objects.len() + light) as u32,
             triangle: number as u32,
             material: (scene.materials.len() + light) as u32,

@@ -155,7 +155,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn triangle(corners: [Vec3; 3]) -> WorldTriangle {
-        WorldTriangle { corners, normals: None, object: 0, triangle: 0, material: 0, exchanged: false }
+        WorldTriangle { corners, normals: None, uvs: None, object: 0, triangle: 0, material: 0, exchanged: false }
     }
 
     #[test]

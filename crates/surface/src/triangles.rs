@@ -1,7 +1,7 @@
 //! The scene's triangles in the world frame.
 
 use diacaustic_scene::{Object, Scene};
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 
 /// A triangle of the scene, world frame, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +10,8 @@ pub struct WorldTriangle {
     pub corners: [Vec3; 3],
     /// Unit normals at the corners, or none for a flat facet.
     pub normals: Option<[Vec3; 3]>,
+    /// Texture coordinates at the corners, if the mesh has any.
+    pub uvs: Option<[Vec2; 3]>,
     /// Index of the object.
     pub object: u32,
     /// Index of the triangle in the object's mesh.
@@ -53,6 +55,7 @@ fn object_triangles(index: u32, object: &Object) -> impl Iterator<Item = WorldTr
             corners: vertices.map(|v| object.world_from_object.transform_point3(mesh.positions[v as usize])),
             normals: (!mesh.normals.is_empty())
                 .then(|| vertices.map(|v| (normal_matrix * mesh.normals[v as usize]).normalize_or_zero())),
+            uvs: (!mesh.uvs.is_empty()).then(|| vertices.map(|v| mesh.uvs[v as usize])),
             object: index,
             triangle: number as u32,
             material: object.material_of(number) as u32,
@@ -60,6 +63,7 @@ fn object_triangles(index: u32, object: &Object) -> impl Iterator<Item = WorldTr
         };
         triangle.corners = triangle.arrange(triangle.corners);
         triangle.normals = triangle.normals.map(|normals| triangle.arrange(normals));
+        triangle.uvs = triangle.uvs.map(|uvs| triangle.arrange(uvs));
         triangle
     })
 }

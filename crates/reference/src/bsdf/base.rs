@@ -5,8 +5,9 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 use diacaustic_scene::MaterialKind;
 use glam::DVec3;
 
-use crate::fresnel::diffuse_reflectance;
 use crate::snell::reflect;
+
+use super::{Factors, PreparedMaterial};
 
 /// The diffuse lobe of a receiver, and Phong's additions to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,15 +21,18 @@ pub struct Base {
 }
 
 impl Base {
-    /// The base of a material, if it has one. `albedo` is what [`resolved_albedo`] gives, `ambient` the scene's.
-    pub(super) fn of(kind: &MaterialKind, ambient: DVec3, albedo: DVec3) -> Option<Self> {
-        let (ambient, phong) = match *kind {
+    /// The base of a material at a point, if it has one. `ambient` is the scene's.
+    pub(super) fn of(prepared: &PreparedMaterial, factors: &Factors, ambient: DVec3) -> Option<Self> {
+        if !prepared.is_receiver {
+            return None;
+        }
+        let (ambient, phong) = match prepared.material.kind {
             MaterialKind::Phong { ambient: factor, specular, shininess, .. } => {
-                (ambient * factor.as_dvec3(), Some((specular.as_dvec3(), f64::from(shininess))))
+                (ambient * factor.as_dvec3() * factors.color, Some((specular.as_dvec3(), f64::from(shininess))))
             }
             _ => (DVec3::ZERO, None),
         };
-        kind.is_receiver().then_some(Self { albedo, ambient, phong })
+        Some(Self { albedo: resolved_albedo(prepared, factors), ambient, phong })
     }
 
     /// Phong's lobe toward light in plain sight, 1/sr; the cosine is not in it.
@@ -50,17 +54,18 @@ pub(super) fn metallic_f0(base_color: DVec3, metallic: f64) -> DVec3 {
 
 /// ρ\* of a material's base, which makes up for the light that its specular lobe keeps from entering and leaving; zero
 /// without a base.
-pub(crate) fn resolved_albedo(kind: &MaterialKind) -> DVec3 {
-    match *kind {
-        MaterialKind::Diffuse { albedo } | MaterialKind::Phong { diffuse: albedo, .. } => albedo.as_dvec3(),
+fn resolved_albedo(prepared: &PreparedMaterial, factors: &Factors) -> DVec3 {
+    match prepared.material.kind {
+        MaterialKind::Diffuse { albedo } | MaterialKind::Phong { diffuse: albedo, .. } => {
+            albedo.as_dvec3() * factors.color
+        }
         MaterialKind::Coated { albedo, ior, .. } => {
-            let (albedo, n) = (albedo.as_dvec3(), f64::from(ior));
-            let outside = 1.0 - diffuse_reflectance(1.0 / n);
-            let inside = 1.0 - outside / (n * n);
+            let (albedo, n) = (albedo.as_dvec3() * factors.color, f64::from(ior));
+            let inside = 1.0 - prepared.entering / (n * n);
             albedo / (n * n * (1.0 - albedo * inside))
         }
         MaterialKind::MetallicRoughness { base_color, metallic, .. } => {
-            let (color, metallic) = (base_color.as_dvec3(), f64::from(metallic));
+            let (color, metallic) = (base_color.as_dvec3() * factors.color, f64::from(metallic) * factors.metallic);
             let f0 = metallic_f0(color, metallic);
             // The remainder is 0 where nothing enters: f₀ is 1 for white metal alone.
             let entering = 1.0 - (f0 + (1.0 - f0) / 21.0);

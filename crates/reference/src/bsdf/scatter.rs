@@ -9,8 +9,8 @@ use crate::warp;
 use super::microfacet::Microfacets;
 use super::{Specular, Surface};
 
-/// The most by which interpolated normals raise flux at one surface.
-const ADJOINT_LIMIT: f64 = 4.0;
+/// The most by which shading normals raise flux at one surface.
+pub(crate) const SHADING_NORMAL_LIMIT: f64 = 4.0;
 
 /// Random numbers in [0, 1) for one caster.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,12 +180,12 @@ fn unshadowed(microfacets: &Microfacets, n: DVec3, direction: DVec3, outgoing: D
 
 fn adjoint(direction: DVec3, outgoing: DVec3, n_s: DVec3, n_g: DVec3) -> f64 {
     let factor = direction.dot(n_s) * outgoing.dot(n_g) / (direction.dot(n_g) * outgoing.dot(n_s));
-    factor.abs().min(ADJOINT_LIMIT)
+    factor.abs().min(SHADING_NORMAL_LIMIT)
 }
 
 #[cfg(test)]
 mod tests {
-    use diacaustic_scene::MaterialKind;
+    use diacaustic_scene::{Dispersion, Material, MaterialKind};
     use glam::Vec3;
 
     use super::*;
@@ -196,7 +196,7 @@ mod tests {
 
     /// What becomes of a ray in air at a dielectric of the other index beyond, or at another material.
     fn scatter(kind: &MaterialKind, ior: [f64; 2], normal_shading: DVec3, direction: DVec3, choice: f64) -> Scattered {
-        let surface = Surface::new(kind, DVec3::ZERO, ior[0], ior[1]);
+        let surface = Surface::new(&Material::new("", kind.clone()), DVec3::ZERO, ior[0], ior[1]);
         let draw = || Draw { choice, microfacet: [0.5; 2] };
         match surface.scatter(&facing(normal_shading), direction, draw) {
             Outcome::Passed(scattered) => scattered,
@@ -206,7 +206,14 @@ mod tests {
 
     fn glass() -> MaterialKind {
         let (tint, absorption) = (Vec3::splat(0.5), Vec3::ZERO);
-        MaterialKind::Dielectric { ior: 1.5, tint, absorption, roughness: 0.0, priority: 0 }
+        MaterialKind::Dielectric {
+            ior: 1.5,
+            dispersion: Dispersion::None,
+            tint,
+            absorption,
+            roughness: 0.0,
+            priority: 0,
+        }
     }
 
     #[test]
@@ -227,15 +234,17 @@ mod tests {
             draws += 1;
             Draw { choice: 0.999, microfacet: [0.5; 2] }
         };
-        let outcome = Surface::new(&glass(), DVec3::ZERO, 1.5, 1.0).scatter(&facing(DVec3::Z), d, draw);
+        let glass = Material::new("", glass());
+        let outcome = Surface::new(&glass, DVec3::ZERO, 1.5, 1.0).scatter(&facing(DVec3::Z), d, draw);
         assert!(matches!(outcome, Outcome::Passed(scattered) if !scattered.transmitted));
         assert_eq!(draws, 1);
     }
 
     #[test]
     fn mirrors_draw_nothing() {
-        let mirror = Surface::new(&MaterialKind::Mirror { reflectance: Vec3::ONE }, DVec3::ZERO, 1.0, 1.0);
-        mirror.scatter(&facing(DVec3::Z), -DVec3::Z, || panic!("a mirror draws no choice"));
+        let mirror = Material::new("", MaterialKind::Mirror { reflectance: Vec3::ONE });
+        Surface::new(&mirror, DVec3::ZERO, 1.0, 1.0)
+            .scatter(&facing(DVec3::Z), -DVec3::Z, || panic!("a mirror draws no choice"));
     }
 
     #[test]

@@ -30,10 +30,10 @@ pub(super) fn gather(
     let mut gathered = DVec3::ZERO;
     for light in 0..world.scene().lights.len() {
         let sample = sample_light(world, light, vertex.point, generator);
-        gathered += sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample));
+        gathered += sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample, generator));
     }
     let sample = sample_surfaces(world, vertex.point, generator);
-    gathered + sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample))
+    gathered + sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample, generator))
 }
 
 /// The same for the lights alone that no ray drawn from a BSDF meets.
@@ -45,19 +45,26 @@ pub(super) fn gather_delta(
 ) -> DVec3 {
     let lights = world.scene().lights.iter().enumerate();
     let deltas = lights.filter(|(_, light)| lights::is_delta(&light.kind));
-    deltas
-        .filter_map(|(light, _)| sample_light(world, light, vertex.point, generator))
-        .map(|sample| arriving(world, vertex, &response, &sample))
-        .sum()
+    let one = |(light, _)| {
+        let sample = sample_light(world, light, vertex.point, generator);
+        sample.map_or(DVec3::ZERO, |sample| arriving(world, vertex, &response, &sample, generator))
+    };
+    deltas.map(one).sum()
 }
 
-fn arriving(world: &World, vertex: &Vertex, response: &impl Fn(DVec3) -> DVec3, sample: &LightSample) -> DVec3 {
+fn arriving(
+    world: &World,
+    vertex: &Vertex,
+    response: &impl Fn(DVec3) -> DVec3,
+    sample: &LightSample,
+    generator: &mut Generator,
+) -> DVec3 {
     let response = response(sample.wi);
     if response == DVec3::ZERO || sample.value == DVec3::ZERO {
         return DVec3::ZERO;
     }
     let ray = Ray { origin: vertex.point, direction: sample.wi };
-    if world.occluded(&ray, sample.distance, vertex.departure, sample.target) {
+    if world.occluded(&ray, sample.distance, vertex.departure, sample.target, generator.next()) {
         return DVec3::ZERO;
     }
     let side = usize::from(sample.wi.dot(vertex.normal) < 0.0);

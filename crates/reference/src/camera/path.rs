@@ -136,12 +136,12 @@ impl<'a> Walk<'a> {
 
     /// Passes a caster, or says what receives.
     fn meet_surface(&mut self, hit: &Hit, generator: &mut Generator) -> Option<Receiver> {
-        let facing = self.world.triangles()[hit.triangle].facing(hit.barycentric, self.ray.direction);
+        let facing = self.world.facing(hit, self.ray.direction);
         self.surfaces += 1;
         self.departure = Departure::Triangle(hit.triangle);
         self.ray.origin = facing.point;
         if self.counts_light && facing.front {
-            self.find(self.world.emission(hit.triangle));
+            self.find(self.world.emission(hit.triangle, hit.barycentric));
         }
         match Crossing::of(self.world, hit, &facing, self.media) {
             Crossing::Nothing(media) => {

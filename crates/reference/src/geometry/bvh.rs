@@ -1,5 +1,7 @@
 //! A binary bounding-volume hierarchy over triangles, split by the binned surface-area heuristic (Wald 2007).
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::triangle::{Facet, Triangle};
@@ -99,33 +101,32 @@ impl Bvh {
         self.nodes[0].bounds.size().max_element()
     }
 
-    /// The nearest triangle between two distances along a ray, but for `skip`.
-    pub(super) fn nearest(&self, ray: &Ray, from: f64, to: f64, skip: Option<usize>) -> Option<Hit> {
+    /// The nearest triangle that `stands` between two distances along a ray.
+    pub(super) fn nearest(&self, ray: &Ray, range: Range<f64>, stands: impl Fn(&Hit) -> bool) -> Option<Hit> {
         let mut nearest: Option<Hit> = None;
-        self.visit(ray, from, to, skip, |hit| {
+        self.visit(ray, range, stands, |hit| {
             nearest = Some(hit);
             Some(hit.distance)
         });
         nearest
     }
 
-    /// Whether a triangle other than `skip` lies between two distances along a ray.
-    pub(super) fn any(&self, ray: &Ray, from: f64, to: f64, skip: Option<usize>) -> bool {
+    /// Whether a triangle `stands` between two distances along a ray.
+    pub(super) fn any(&self, ray: &Ray, range: Range<f64>, stands: impl Fn(&Hit) -> bool) -> bool {
         let mut found = false;
-        self.visit(ray, from, to, skip, |_| {
+        self.visit(ray, range, stands, |_| {
             found = true;
             None
         });
         found
     }
 
-    /// Calls `report` with each hit found within the limit; it gives the new limit, or none to stop.
+    /// Calls `report` with each hit found within the range that `stands`; it gives the new limit, or none to stop.
     fn visit(
         &self,
         ray: &Ray,
-        from: f64,
-        mut limit: f64,
-        skip: Option<usize>,
+        Range { start, end: mut limit }: Range<f64>,
+        stands: impl Fn(&Hit) -> bool,
         mut report: impl FnMut(Hit) -> Option<f64>,
     ) {
         if self.facets.is_empty() {
@@ -142,7 +143,7 @@ impl Bvh {
             let Node { first, count, .. } = self.nodes[index];
             for facet in &self.facets[first..first + count] {
                 let Some(hit) = facet.meet(ray) else { continue };
-                if hit.distance <= from || hit.distance >= limit || Some(hit.triangle) == skip {
+                if hit.distance <= start || hit.distance >= limit || !stands(&hit) {
                     continue;
                 }
                 let Some(new_limit) = report(hit) else { return };
@@ -219,7 +220,7 @@ mod tests {
             .map(|index| {
                 let middle = point(2.0);
                 let corners = [middle + point(0.4), middle + point(0.4), middle + point(0.4)];
-                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None }
+                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None, uvs: None }
             })
             .collect()
     }
@@ -243,12 +244,12 @@ mod tests {
                 .filter_map(|facet| facet.meet(&ray))
                 .filter(|hit| hit.distance > 0.0)
                 .min_by(|a, b| a.distance.total_cmp(&b.distance));
-            assert_eq!(bvh.nearest(&ray, 0.0, f64::INFINITY, None), expected);
+            assert_eq!(bvh.nearest(&ray, 0.0..f64::INFINITY, |_| true), expected);
             let Some(hit) = expected else { continue };
             met += 1;
-            assert!(bvh.any(&ray, 0.0, hit.distance + 1e-9, None));
-            assert!(!bvh.any(&ray, 0.0, hit.distance, None));
-            let behind = bvh.nearest(&ray, 0.0, f64::INFINITY, Some(hit.triangle));
+            assert!(bvh.any(&ray, 0.0..hit.distance + 1e-9, |_| true));
+            assert!(!bvh.any(&ray, 0.0..hit.distance, |_| true));
+            let behind = bvh.nearest(&ray, 0.0..f64::INFINITY, |other| other.triangle != hit.triangle);
             assert!(behind.is_none_or(|next| next.triangle != hit.triangle && next.distance >= hit.distance));
         }
         assert!(met > 1000, "only {met} rays met anything");
@@ -261,12 +262,12 @@ mod tests {
             .map(|index| {
                 let offset = index as f64 * DVec3::Z;
                 let corners = corners.map(|p| p + offset);
-                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None }
+                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None, uvs: None }
             })
             .collect();
         let bvh = Bvh::build(&triangles);
         let ray = Ray { origin: DVec3::new(0.0, 0.5, -1.0), direction: DVec3::Z };
-        let hit = bvh.nearest(&ray, 3.5, f64::INFINITY, None).expect("the ray runs through the stack's edge");
+        let hit = bvh.nearest(&ray, 3.5..f64::INFINITY, |_| true).expect("the ray runs through the stack's edge");
         assert_eq!((hit.triangle, hit.distance), (3, 4.0));
     }
 
@@ -274,7 +275,7 @@ mod tests {
     fn no_triangles_no_hit() {
         let ray = Ray { origin: DVec3::ZERO, direction: DVec3::Z };
         let bvh = Bvh::build(&[]);
-        assert_eq!(bvh.nearest(&ray, 0.0, f64::INFINITY, None), None);
+        assert_eq!(bvh.nearest(&ray, 0.0..f64::INFINITY, |_| true), None);
         assert_eq!(bvh.extent(), 0.0);
     }
 }

@@ -1,7 +1,9 @@
 //! World-space triangles and how they face a ray.
 
+use std::ops::{Add, Mul};
+
 use diacaustic_scene::{Object, Scene};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::{Hit, Ray};
 
@@ -22,6 +24,8 @@ pub struct Triangle {
     pub normal_geometric: DVec3,
     /// Unit normals of the corners, or none on a flat mesh.
     pub normals: Option<[DVec3; 3]>,
+    /// Texture coordinates of the corners, or none on a mesh without.
+    pub uvs: Option<[DVec2; 3]>,
 }
 
 /// A surface point as a ray sees it: every normal is on the side that the ray comes from.
@@ -33,20 +37,26 @@ pub struct Facing {
     pub front: bool,
     /// Unit normal of the triangle.
     pub normal_geometric: DVec3,
-    /// Unit normal interpolated from the corners; the geometric one on flat meshes and where the interpolated one
-    /// looks away from the ray.
+    /// Unit normal of the normal map; the one interpolated from the corners where there is none or it looks away from
+    /// the ray; the geometric one on flat meshes and where that looks away as well.
     pub normal_shading: DVec3,
 }
 
 impl Triangle {
-    /// Where a ray with this direction meets the triangle at `barycentric`.
-    pub fn facing(&self, barycentric: DVec3, direction: DVec3) -> Facing {
+    /// Where a ray with this direction meets the triangle at `barycentric`. `mapped` is the normal map's normal, on the
+    /// triangle's front.
+    pub(super) fn facing(&self, barycentric: DVec3, direction: DVec3, mapped: Option<DVec3>) -> Facing {
         let front = direction.dot(self.normal_geometric) < 0.0;
         let side = if front { 1.0 } else { -1.0 };
         let normal_geometric = side * self.normal_geometric;
-        let interpolated = self.normals.map(|normals| side * weighted(normals, barycentric).normalize_or_zero());
-        let normal_shading = interpolated.filter(|n| -direction.dot(*n) > 0.0).unwrap_or(normal_geometric);
+        let mut candidates = [mapped, self.interpolated_normal(barycentric)].into_iter().flatten().map(|n| side * n);
+        let normal_shading = candidates.find(|n| -direction.dot(*n) > 0.0).unwrap_or(normal_geometric);
         Facing { point: weighted(self.corners, barycentric), front, normal_geometric, normal_shading }
+    }
+
+    /// The corners' normals between them, on the triangle's front, unit length; none on a flat mesh.
+    pub(super) fn interpolated_normal(&self, barycentric: DVec3) -> Option<DVec3> {
+        self.normals.and_then(|normals| weighted(normals, barycentric).try_normalize())
     }
 }
 
@@ -104,13 +114,19 @@ fn flatten_object(object: usize, placed: &Object) -> Vec<Triangle> {
             mesh.triangles[index]
                 .map(|v| (normal_from_object * mesh.normals[v as usize].as_dvec3()).normalize_or_zero())
         });
-        Triangle { object, index, corners, normal_geometric, normals }
+        let uvs = (!mesh.uvs.is_empty()).then(|| mesh.triangles[index].map(|v| mesh.uvs[v as usize].as_dvec2()));
+        Triangle { object, index, corners, normal_geometric, normals, uvs }
     };
     (0..mesh.triangles.len()).map(place).collect()
 }
 
-fn weighted(values: [DVec3; 3], weights: DVec3) -> DVec3 {
-    weights.x * values[0] + weights.y * values[1] + weights.z * values[2]
+/// What three values at the corners are at a point.
+pub(super) fn weighted<T: Add<Output = T>>(values: [T; 3], weights: DVec3) -> T
+where
+    f64: Mul<T, Output = T>,
+{
+    let [a, b, c] = values;
+    weights.x * a + weights.y * b + weights.z * c
 }
 
 #[cfg(test)]
@@ -119,7 +135,7 @@ mod tests {
 
     fn triangle(normals: Option<[DVec3; 3]>) -> Triangle {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals }
+        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals, uvs: None }
     }
 
     #[test]
@@ -143,7 +159,7 @@ mod tests {
         let leaning = DVec3::new(0.6, 0.0, 0.8);
         let smooth = triangle(Some([leaning; 3]));
         let third = DVec3::splat(1.0 / 3.0);
-        let below = smooth.facing(third, DVec3::Z);
+        let below = smooth.facing(third, DVec3::Z, None);
         assert!(!below.front);
         assert_eq!(below.normal_geometric, -DVec3::Z);
         assert!(below.normal_shading.distance(-leaning) < 1e-15);
@@ -153,8 +169,14 @@ mod tests {
     fn shading_normal_that_looks_away_gives_way() {
         let leaning = DVec3::new(0.6, 0.0, 0.8);
         let grazing = DVec3::new(1.0, 0.0, -0.5).normalize();
-        let facing = triangle(Some([leaning; 3])).facing(DVec3::splat(1.0 / 3.0), grazing);
+        let third = DVec3::splat(1.0 / 3.0);
+        let facing = triangle(Some([leaning; 3])).facing(third, grazing, None);
         assert!(facing.front);
         assert_eq!(facing.normal_shading, DVec3::Z);
+        // A normal map's comes first, then the interpolated one.
+        let (d, upright) = (DVec3::new(0.0, 0.6, -0.8), DVec3::new(0.0, 0.8, 0.6));
+        let mapped = |n| triangle(Some([leaning; 3])).facing(third, d, Some(n)).normal_shading;
+        assert_eq!(mapped(-DVec3::Y), -DVec3::Y);
+        assert!(mapped(upright).distance(leaning) < 1e-15);
     }
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::generator::Generator;
 use crate::geometry::{Departure, Ray, Sphere, World};
-use crate::lights::{cap_height, intensity_of, radiance_of};
+use crate::lights::{EmissiveTriangle, cap_height, intensity_of, radiance_of};
 use crate::media::Media;
 use crate::warp;
 
@@ -76,8 +76,9 @@ pub(super) fn emit(
 
 fn emit_from_surfaces(world: &World, through: Option<&Sphere>, generator: &mut Generator) -> Option<Start> {
     let (triangle, density) = world.emissive().choose(generator.unit())?;
-    let origin = triangle.at(generator.unit(), generator.unit());
-    let (direction, flux) = from_surface(origin, triangle.normal, triangle.radiance / density, through, generator)?;
+    let barycentric = EmissiveTriangle::point(generator.unit(), generator.unit());
+    let (origin, strength) = (triangle.at(barycentric), triangle.radiance(world, barycentric) / density);
+    let (direction, flux) = from_surface(origin, triangle.normal, strength, through, generator)?;
     let departure = Departure::Triangle(triangle.triangle);
     Some(Start { ray: Ray { origin, direction }, departure, media: triangle.media, flux })
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::bsdf::{Crossing, Draw, Outcome};
 use crate::generator::Generator;
-use crate::geometry::{Departure, Meeting, Ray, World};
+use crate::geometry::{Departure, Facing, Hit, Meeting, Ray, World};
 use crate::roulette;
 
 use super::emission::Start;
@@ -15,7 +15,7 @@ pub(super) struct Landing {
     pub(super) point: DVec3,
     /// Direction of flight.
     pub(super) direction: DVec3,
-    /// W.
+    /// W, as counts for the irradiance on a surface of the shading normal.
     pub(super) flux: DVec3,
     pub(super) has_met_caster: bool,
 }
@@ -29,10 +29,11 @@ pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Opt
     loop {
         let Some(Meeting::Surface(hit)) = world.meet(&ray, departure) else { return None };
         kept *= world.dielectrics().transmittance(&media, hit.distance);
-        let facing = world.triangles()[hit.triangle].facing(hit.barycentric, ray.direction);
+        let facing = world.facing(&hit, ray.direction);
         let land = |kept: DVec3, weight: DVec3| {
             let (point, direction) = (facing.point, ray.direction);
-            Some(Landing { point, direction, flux: flux * kept * weight, has_met_caster: casters > 0 })
+            let flux = landing_factor(world, &hit, &facing, direction) * flux * kept * weight;
+            Some(Landing { point, direction, flux, has_met_caster: casters > 0 })
         };
         let mut direction = ray.direction;
         match Crossing::of(world, &hit, &facing, media) {
@@ -62,4 +63,12 @@ pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Opt
         ray = Ray { origin: facing.point, direction };
         departure = Departure::Triangle(hit.triangle);
     }
+}
+
+/// The irradiance on a surface of the shading normal over that on the triangle, for light of a direction of flight. Nothing
+/// comes from below the shading normal, as the eye sees it: it is for directions of the eye that it gives way.
+fn landing_factor(world: &World, hit: &Hit, facing: &Facing, direction: DVec3) -> f64 {
+    let side = if facing.front { 1.0 } else { -1.0 };
+    let cos = -direction.dot(side * world.shading_normal(hit));
+    cos.max(0.0) / -direction.dot(facing.normal_geometric)
 }

@@ -3,7 +3,7 @@
 use diacaustic_scene::Scene;
 use glam::DVec3;
 
-use crate::geometry::Triangle;
+use crate::geometry::{Triangle, World};
 use crate::media::{Dielectrics, Media};
 
 /// A triangle that shines from its front.
@@ -14,18 +14,28 @@ pub(crate) struct EmissiveTriangle {
     pub(crate) corners: [DVec3; 3],
     /// Unit normal of the front.
     pub(crate) normal: DVec3,
-    /// W/(m² sr).
-    pub(crate) radiance: DVec3,
+    /// The material's emission, but for its picture, as a mean over the channels, W/(m² sr).
+    strength: f64,
     /// What encloses its first corner.
     pub(crate) media: Media,
 }
 
 impl EmissiveTriangle {
-    /// A point, even in area.
-    pub(crate) fn at(&self, u: f64, v: f64) -> DVec3 {
-        let [a, b, c] = self.corners;
+    /// The barycentric coordinates of a point, even in area.
+    pub(crate) fn point(u: f64, v: f64) -> DVec3 {
         let s = u.sqrt();
-        a + s * (1.0 - v) * (b - a) + s * v * (c - a)
+        DVec3::new(1.0 - s, s * (1.0 - v), s * v)
+    }
+
+    /// A point, metres.
+    pub(crate) fn at(&self, barycentric: DVec3) -> DVec3 {
+        let [a, b, c] = self.corners;
+        a + barycentric.y * (b - a) + barycentric.z * (c - a)
+    }
+
+    /// The mean radiance of a point, which is there with the probability of its opacity, W/(m² sr).
+    pub(crate) fn radiance(&self, world: &World, barycentric: DVec3) -> DVec3 {
+        world.opacity(self.triangle, barycentric) * world.emission(self.triangle, barycentric)
     }
 
     fn area(&self) -> f64 {
@@ -34,11 +44,11 @@ impl EmissiveTriangle {
     }
 }
 
-/// All of them, to be drawn in proportion to area and radiance.
+/// All of them, to be drawn in proportion to area and emission; pictures do not count, so that points are even on each.
 #[derive(Clone, Debug)]
 pub(crate) struct EmissiveSurfaces {
     triangles: Vec<EmissiveTriangle>,
-    /// Running sums of area times the mean of the radiance's channels.
+    /// Running sums of area times strength.
     sums: Vec<f64>,
 }
 
@@ -55,7 +65,7 @@ impl EmissiveSurfaces {
                     triangle,
                     corners: t.corners,
                     normal: t.normal_geometric,
-                    radiance,
+                    strength: radiance.element_sum() / 3.0,
                     media: media(),
                 })
             })
@@ -64,7 +74,7 @@ impl EmissiveSurfaces {
         let sums = emissive
             .iter()
             .map(|t| {
-                sum += t.area() * t.radiance.element_sum() / 3.0;
+                sum += t.area() * t.strength;
                 sum
             })
             .collect();
@@ -80,6 +90,6 @@ impl EmissiveSurfaces {
         let total = *self.sums.last()?;
         let chosen = self.sums.partition_point(|sum| *sum <= u * total).min(self.triangles.len() - 1);
         let triangle = &self.triangles[chosen];
-        Some((triangle, triangle.radiance.element_sum() / 3.0 / total))
+        Some((triangle, triangle.strength / total))
     }
 }

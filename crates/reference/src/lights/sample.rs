@@ -9,7 +9,7 @@ use crate::generator::Generator;
 use crate::geometry::{LightShape, Ray, Sphere, Target, World};
 use crate::warp;
 
-use super::{cap_height, intensity_of, radiance_of};
+use super::{EmissiveTriangle, cap_height, intensity_of, radiance_of};
 
 /// One direction in which a point gets light, if nothing stands between.
 #[derive(Clone, Copy, Debug)]
@@ -72,8 +72,9 @@ pub(crate) fn sample_light(
 /// A sample of all objects that shine.
 pub(crate) fn sample_surfaces(world: &World, point: DVec3, generator: &mut Generator) -> Option<LightSample> {
     let (triangle, density) = world.emissive().choose(generator.unit())?;
-    let on_light = triangle.at(generator.unit(), generator.unit());
-    let sample = from_area(point, on_light, triangle.normal, triangle.radiance / density, Target::Place)?;
+    let barycentric = EmissiveTriangle::point(generator.unit(), generator.unit());
+    let (on_light, strength) = (triangle.at(barycentric), triangle.radiance(world, barycentric) / density);
+    let sample = from_area(point, on_light, triangle.normal, strength, Target::Place)?;
     // The triangle itself, and a neighbour that shares the point, do not stand in the way.
     let tolerance = world.epsilon() / -triangle.normal.dot(sample.wi).min(-1e-6);
     Some(LightSample { distance: sample.distance - tolerance, ..sample })

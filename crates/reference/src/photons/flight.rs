@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::bsdf::{Crossing, Outcome, Surface};
+use crate::bsdf::{Crossing, Outcome, SHADING_NORMAL_LIMIT, Surface};
 use crate::geometry::{Departure, Facing, Hit, Meeting, Ray};
 use crate::media::Media;
 use crate::random::PhotonNumbers;
@@ -34,7 +34,7 @@ pub struct Vertex {
     pub triangle: usize,
     /// What happened there.
     pub event: Event,
-    /// Flux after it, W; on a receiver, the flux that its base takes.
+    /// Flux after it, W; on a receiver, the flux that its base takes or that is deposited.
     pub flux: DVec3,
 }
 
@@ -133,7 +133,7 @@ impl Flight<'_> {
     fn meet_surface(&mut self, hit: &Hit) -> Option<End> {
         let world = self.job.world;
         self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance));
-        let facing = world.triangles()[hit.triangle].facing(hit.barycentric, self.ray.direction);
+        let facing = world.facing(hit, self.ray.direction);
         match Crossing::of(world, hit, &facing, self.media) {
             Crossing::Nothing(media) => {
                 self.media = media;
@@ -160,9 +160,7 @@ impl Flight<'_> {
             }
             Outcome::Passed(scattered) => {
                 self.attenuate(scattered.weight);
-                let corrected = self.flux * scattered.adjoint;
-                self.ledger.shading_normals += self.flux - corrected;
-                self.flux = corrected;
+                self.correct(scattered.adjoint);
                 let event = match scattered.transmitted {
                     false => Event::Reflected,
                     true if beyond == self.media => Event::Passed,
@@ -186,6 +184,11 @@ impl Flight<'_> {
     fn land(&mut self, hit: &Hit, facing: &Facing, weight: DVec3) -> End {
         let has_met_caster = !self.vertices.is_empty();
         self.attenuate(weight);
+        if has_met_caster {
+            let [shading, geometric] =
+                [facing.normal_shading, facing.normal_geometric].map(|n| self.ray.direction.dot(n));
+            self.correct((shading / geometric).abs().min(SHADING_NORMAL_LIMIT));
+        }
         let Facing { point, front, .. } = *facing;
         let landing = Landing { triangle: hit.triangle, barycentric: hit.barycentric, front, flux: self.flux };
         self.record(hit, point, Event::Received);
@@ -203,6 +206,13 @@ impl Flight<'_> {
         let kept = self.flux * share;
         self.ledger.absorbed += self.flux - kept;
         self.flux = kept;
+    }
+
+    /// A factor of shading normals, up or down.
+    fn correct(&mut self, factor: f64) {
+        let corrected = self.flux * factor;
+        self.ledger.shading_normals += self.flux - corrected;
+        self.flux = corrected;
     }
 
     fn record(&mut self, hit: &Hit, position: DVec3, event: Event) {

@@ -19,7 +19,7 @@ pub struct Ledger {
     pub escaped: DVec3,
     /// What still flew when its path became too long.
     pub cut_off: DVec3,
-    /// What the adjoint factor of interpolated normals took away; negative where it added.
+    /// What factors of shading normals took away; negative where they added.
     pub shading_normals: DVec3,
 }
 

@@ -6,9 +6,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use diacaustic_scene::{
-    Camera, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings, Scene,
+    Camera, Dispersion, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings, RenderSettings, Scene,
+    Texture, TextureImage,
 };
 use glam::{Affine3A, Vec3};
+use half::f16;
 
 /// A square floor of this half width in the plane y = 0, which looks up.
 pub fn floor(half: f32) -> Mesh {
@@ -74,12 +76,19 @@ pub fn absorbing_glass(ior: f32, absorption: f32) -> MaterialKind {
 
 /// Smooth glass of priority 0.
 pub fn tinted_glass(ior: f32, tint: Vec3, absorption: Vec3) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint, absorption, roughness: 0.0, priority: 0 }
+    MaterialKind::Dielectric { ior, dispersion: Dispersion::None, tint, absorption, roughness: 0.0, priority: 0 }
 }
 
 /// Clear rough glass.
 pub fn frosted(ior: f32, roughness: f32) -> MaterialKind {
-    MaterialKind::Dielectric { ior, tint: Vec3::ONE, absorption: Vec3::ZERO, roughness, priority: 0 }
+    MaterialKind::Dielectric {
+        ior,
+        dispersion: Dispersion::None,
+        tint: Vec3::ONE,
+        absorption: Vec3::ZERO,
+        roughness,
+        priority: 0,
+    }
 }
 
 /// The same mesh in flat facets: interpolated normals do not keep phase space, and nested ones can catch light for good.
@@ -123,7 +132,7 @@ pub fn scene(parts: Vec<(Mesh, MaterialKind, Vec3)>, lights: Vec<Light>) -> Scen
         output: OutputSettings::default(),
     };
     for (index, (mesh, kind, place)) in parts.into_iter().enumerate() {
-        scene.materials.push(Material { name: format!("material {index}"), kind, emission: Vec3::ZERO });
+        scene.materials.push(Material::new(format!("material {index}"), kind));
         scene.objects.push(Object {
             name: format!("object {index}"),
             mesh: Arc::new(mesh),
@@ -133,4 +142,32 @@ pub fn scene(parts: Vec<(Mesh, MaterialKind, Vec3)>, lights: Vec<Light>) -> Scen
         });
     }
     scene
+}
+
+/// A picture of the numbers that `texel` gives for each column and row, the first row at the top.
+pub fn picture(width: u32, height: u32, texel: impl Fn(u32, u32) -> [f32; 4]) -> Texture {
+    let places = (0..width * height).map(|i| (i % width, i / width));
+    let texels = places.map(|(column, row)| texel(column, row).map(f16::from_f32)).collect();
+    Texture::new(Arc::new(TextureImage::new(width, height, texels).expect("each place has its texel")))
+}
+
+/// A number that looks random, from 0 to 1, one of 1/64ths, which half precision holds.
+pub fn speckle(column: u32, row: u32) -> f32 {
+    let mixed = column.wrapping_mul(0x9e37_79b1) ^ row.wrapping_mul(0x85eb_ca77);
+    (mixed ^ mixed >> 15).wrapping_mul(0x2c1b_3c6d).wrapping_shr(20) as f32 % 65.0 / 64.0
+}
+
+/// A horizontal rectangle that looks up, centred above the origin, whose picture is upright seen from above with −z up.
+pub fn plate(height: f32, size: f32) -> Mesh {
+    Mesh::rectangle(height * Vec3::Y, size * Vec3::X, -size * Vec3::Z)
+}
+
+/// Parallel light of irradiance 3 W/m² across it.
+pub fn parallel(direction: Vec3) -> Light {
+    named(LightKind::Distant { direction, angular_radius: 0.0, irradiance: Vec3::splat(3.0) })
+}
+
+/// A clear sheet of glass.
+pub fn pane() -> MaterialKind {
+    MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }
 }

@@ -6,7 +6,7 @@ use std::{fs, ops::RangeInclusive, path::Path};
 
 use glam::Vec3;
 
-use crate::{Error, Material, MaterialKind, Warning};
+use crate::{Dispersion, Error, Material, MaterialKind, Warning};
 
 /// Index of refraction of a dielectric that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -66,7 +66,7 @@ impl Entry {
         let kind = self.kind();
         let can_emit = !matches!(kind, MaterialKind::Dielectric { .. });
         let emission = self.emission.filter(|_| can_emit).unwrap_or(Vec3::ZERO);
-        Material { name: self.name.clone(), kind, emission }
+        Material { emission, ..Material::new(self.name.clone(), kind) }
     }
 
     fn kind(&self) -> MaterialKind {
@@ -77,6 +77,7 @@ impl Entry {
         if [4.0, 6.0, 7.0, 9.0].contains(&model) || self.dissolve.is_some_and(|dissolve| dissolve < 1.0) {
             let colour = self.diffuse.filter(|diffuse| *diffuse != Vec3::ZERO);
             MaterialKind::Dielectric {
+                dispersion: Dispersion::None,
                 ior: self.ior.unwrap_or(DEFAULT_IOR),
                 tint: self.transmission.or(colour).unwrap_or(Vec3::ONE),
                 absorption: Vec3::ZERO,

@@ -1,12 +1,30 @@
 //! Reads the materials of a scene file.
 
+use std::path::Path;
+
 use glam::Vec3;
 
-use super::table::{Entry, Table};
-use crate::{Error, METALS, Material, MaterialKind, Metal, SUBSTANCES, Substance, metal, substance};
+use super::{
+    refraction::{self, Refraction, read_refraction, read_substance},
+    table::Table,
+    textures::{DefaultChannel, Opacity, TextureReader},
+};
+use crate::{Error, METALS, Material, MaterialKind, Metal, Textures, metal};
 
 /// Index of refraction of a coat or a thin wall that states none.
 const DEFAULT_IOR: f32 = 1.5;
+
+const COLOR: &str = "a colour: 3 numbers [r, g, b] or one number for gray";
+
+/// The channels, from 0, in which glTF's pictures of metal hold the roughness and the share of metal.
+const GLTF_ROUGHNESS: usize = 1;
+const GLTF_METALLIC: usize = 2;
+
+/// Keys of dielectrics that take no picture.
+const DIELECTRIC_KEYS: [&str; 8] = {
+    let [ior, substance, cauchy, sellmeier, abbe, dispersion] = refraction::KEYS;
+    [ior, substance, cauchy, sellmeier, abbe, dispersion, "absorption", "priority"]
+};
 
 /// What `type` in a material's table stands for.
 #[derive(Clone, Copy, PartialEq)]
@@ -33,99 +51,168 @@ impl MaterialType {
         ("metallic_roughness", Self::MetallicRoughness),
     ];
 
-    fn keys(self) -> &'static [&'static str] {
+    /// Its keys: those that take a picture besides a colour or a number, and the others.
+    fn keys(self) -> (&'static [&'static str], &'static [&'static str]) {
         match self {
-            Self::Diffuse => &["type", "albedo", "emission"],
-            Self::Phong => &["type", "ambient", "diffuse", "specular", "shininess", "emission"],
-            Self::Mirror => &["type", "reflectance", "emission"],
-            Self::Conductor => &["type", "metal", "eta", "k", "roughness", "emission"],
-            Self::Dielectric => &["type", "ior", "substance", "tint", "absorption", "roughness", "priority"],
-            Self::ThinWalled => &["type", "ior", "substance", "tint"],
-            Self::Coated => &["type", "albedo", "ior", "roughness", "emission"],
-            Self::MetallicRoughness => &["type", "base_color", "metallic", "roughness", "emission"],
+            Self::Diffuse => (&["albedo", "emission", "normal", "opacity"], &[]),
+            Self::Phong => (&["diffuse", "emission", "normal", "opacity"], &["ambient", "specular", "shininess"]),
+            Self::Mirror => (&["reflectance", "emission", "normal", "opacity"], &[]),
+            Self::Conductor => (&["roughness", "emission", "normal", "opacity"], &["metal", "eta", "k"]),
+            Self::Dielectric => (&["tint", "roughness", "normal"], &DIELECTRIC_KEYS),
+            Self::ThinWalled => (&["tint", "normal", "opacity"], &["ior", "substance"]),
+            Self::Coated => (&["albedo", "roughness", "emission", "normal", "opacity"], &["ior"]),
+            Self::MetallicRoughness => (&["base_color", "metallic", "roughness", "emission", "normal", "opacity"], &[]),
         }
+    }
+
+    /// Refuses keys that it does not have, and pictures where it takes none.
+    fn check_keys(self, table: &Table<'_>) -> Result<(), Error> {
+        let is_glass = matches!(self, Self::Dielectric | Self::ThinWalled);
+        if let Some(entry) = table.get("emission").filter(|_| is_glass) {
+            return Err(entry.error("is set, but glass takes no emission; leave it out, or use another material type"));
+        }
+        if let Some(entry) = table.get("opacity").filter(|_| self == Self::Dielectric) {
+            return Err(entry.error(
+                "is set, but a dielectric bounds a volume, which has no holes; leave it out, or use the material type \
+                 \"thin_walled\"",
+            ));
+        }
+        let (with_picture, without) = self.keys();
+        table.allow_only(&[&["type"], with_picture, without].concat())?;
+        for entry in without.iter().filter_map(|key| table.get(key)) {
+            if entry.is_table_with("image") {
+                let others = with_picture.join(", ");
+                return Err(entry.error(format!("takes no picture; these keys do: {others}")));
+            }
+        }
+        Ok(())
     }
 }
 
-pub(super) fn read_material(name: &str, table: &Table<'_>) -> Result<Material, Error> {
-    let expected = "the name of a material type, such as \"diffuse\" or \"dielectric\"";
-    let material_type = table.require("type", expected)?.choice("material type", &MaterialType::NAMES)?;
-    let emission = table.get("emission");
-    if let (Some(entry), MaterialType::Dielectric | MaterialType::ThinWalled) = (&emission, material_type) {
-        return Err(entry.error("is set, but glass takes no emission; leave it out, or use another material type"));
-    }
-    table.allow_only(material_type.keys())?;
-    Ok(Material {
-        name: name.to_owned(),
-        kind: read_kind(material_type, table)?,
-        emission: emission.map_or(Ok(Vec3::ZERO), |entry| entry.color())?,
-    })
+/// Reads materials; holds the pictures that they share.
+pub(super) struct MaterialReader<'a> {
+    textures: TextureReader<'a>,
 }
 
-fn read_kind(material_type: MaterialType, table: &Table<'_>) -> Result<MaterialKind, Error> {
-    let color = |key| table.require(key, "a colour: 3 numbers [r, g, b] or one number for gray")?.color();
-    let number_or = |key, default| table.get(key).map_or(Ok(default), |entry| entry.number());
-    Ok(match material_type {
-        MaterialType::Diffuse => MaterialKind::Diffuse { albedo: color("albedo")? },
-        MaterialType::Phong => MaterialKind::Phong {
-            ambient: color("ambient")?,
-            diffuse: color("diffuse")?,
-            specular: color("specular")?,
-            shininess: table.require("shininess", "a number, the exponent of the lobe")?.number()?,
-        },
-        MaterialType::Mirror => MaterialKind::Mirror { reflectance: color("reflectance")? },
-        MaterialType::Conductor => {
-            let (eta, k) = read_metal(table)?;
-            MaterialKind::Conductor { eta, k, roughness: number_or("roughness", 0.0)? }
-        }
-        MaterialType::Dielectric => read_dielectric(table)?,
-        MaterialType::ThinWalled => MaterialKind::ThinWalled {
-            ior: match table.either_if_any("ior", "substance")? {
-                Some(entry) => read_substance(&entry)?.0,
-                None => DEFAULT_IOR,
+impl<'a> MaterialReader<'a> {
+    pub(super) fn new(base_dir: &'a Path) -> Self {
+        Self { textures: TextureReader::new(base_dir) }
+    }
+
+    pub(super) fn read_all(&mut self, tables: &[(String, Table<'_>)]) -> Result<Vec<Material>, Error> {
+        tables.iter().map(|(name, table)| self.read(name, table)).collect()
+    }
+
+    fn read(&mut self, name: &str, table: &Table<'_>) -> Result<Material, Error> {
+        let expected = "the name of a material type, such as \"diffuse\" or \"dielectric\"";
+        let material_type = table.require("type", expected)?.choice("material type", &MaterialType::NAMES)?;
+        material_type.check_keys(table)?;
+        let mut keys = MaterialKeys { table, reader: &mut self.textures, textures: Textures::default() };
+        let kind = keys.kind(material_type)?;
+        let emission = keys.emission()?;
+        let (opacity, opacity_cutoff) = keys.opacity()?;
+        keys.textures.normal = table.get("normal").map(|entry| keys.reader.normal(&entry)).transpose()?;
+        Ok(Material { emission, opacity, opacity_cutoff, textures: keys.textures, ..Material::new(name, kind) })
+    }
+}
+
+/// The table of a material, and the pictures met in it so far.
+struct MaterialKeys<'m, 'a, 'd> {
+    table: &'m Table<'d>,
+    reader: &'m mut TextureReader<'a>,
+    textures: Textures,
+}
+
+impl MaterialKeys<'_, '_, '_> {
+    fn kind(&mut self, material_type: MaterialType) -> Result<MaterialKind, Error> {
+        let table = self.table;
+        Ok(match material_type {
+            MaterialType::Diffuse => MaterialKind::Diffuse { albedo: self.color("albedo")? },
+            MaterialType::Phong => MaterialKind::Phong {
+                ambient: table.require("ambient", COLOR)?.color()?,
+                diffuse: self.color("diffuse")?,
+                specular: table.require("specular", COLOR)?.color()?,
+                shininess: table.require("shininess", "a number, the exponent of the lobe")?.number()?,
             },
-            tint: color_or(table, "tint", Vec3::ONE)?,
-        },
-        MaterialType::Coated => MaterialKind::Coated {
-            albedo: color("albedo")?,
-            ior: number_or("ior", DEFAULT_IOR)?,
-            roughness: number_or("roughness", 0.0)?,
-        },
-        MaterialType::MetallicRoughness => MaterialKind::MetallicRoughness {
-            base_color: color_or(table, "base_color", Vec3::ONE)?,
-            metallic: number_or("metallic", 1.0)?,
-            roughness: number_or("roughness", 1.0)?,
-        },
-    })
-}
-
-fn color_or(table: &Table<'_>, key: &str, default: Vec3) -> Result<Vec3, Error> {
-    table.get(key).map_or(Ok(default), |entry| entry.color())
-}
-
-fn read_dielectric(table: &Table<'_>) -> Result<MaterialKind, Error> {
-    let expected = "a number, the index of refraction, or \"substance\", a name such as \"water\"";
-    let (ior, absorption) = read_substance(&table.either("ior", "substance", expected)?)?;
-    Ok(MaterialKind::Dielectric {
-        ior,
-        tint: color_or(table, "tint", Vec3::ONE)?,
-        absorption: color_or(table, "absorption", absorption)?,
-        roughness: table.get("roughness").map_or(Ok(0.0), |entry| entry.number())?,
-        priority: table.get("priority").map_or(Ok(0), |entry| entry.integer32())?,
-    })
-}
-
-/// The index of refraction and the absorption of the substance that the entry `substance` names; of the entry `ior`, which states
-/// the index alone, no absorption.
-fn read_substance(entry: &Entry<'_>) -> Result<(f32, Vec3), Error> {
-    if entry.key() == "ior" {
-        return Ok((entry.number()?, Vec3::ZERO));
+            MaterialType::Mirror => MaterialKind::Mirror { reflectance: self.color("reflectance")? },
+            MaterialType::Conductor => {
+                let (eta, k) = read_metal(table)?;
+                MaterialKind::Conductor { eta, k, roughness: self.roughness_or(0.0)? }
+            }
+            MaterialType::Dielectric => self.dielectric()?,
+            MaterialType::ThinWalled => MaterialKind::ThinWalled {
+                ior: match table.either_if_any("ior", "substance")? {
+                    Some(entry) if entry.key() == "ior" => entry.number()?,
+                    Some(entry) => read_substance(&entry)?.ior,
+                    None => DEFAULT_IOR,
+                },
+                tint: self.color_or("tint", Vec3::ONE)?,
+            },
+            MaterialType::Coated => MaterialKind::Coated {
+                albedo: self.color("albedo")?,
+                ior: table.get("ior").map_or(Ok(DEFAULT_IOR), |entry| entry.number())?,
+                roughness: self.roughness_or(0.0)?,
+            },
+            MaterialType::MetallicRoughness => MaterialKind::MetallicRoughness {
+                base_color: self.color_or("base_color", Vec3::ONE)?,
+                metallic: self.metallic_or(1.0)?,
+                roughness: self.roughness_or(1.0)?,
+            },
+        })
     }
-    let name = entry.string("the name of a substance")?;
-    let known = SUBSTANCES.map(|substance| substance.name);
-    let Substance { ior, absorption, .. } =
-        substance(name).ok_or_else(|| entry.unknown_name("substance", name, &known, "substances"))?;
-    Ok((ior, absorption))
+
+    fn dielectric(&mut self) -> Result<MaterialKind, Error> {
+        let Refraction { ior, dispersion, absorption } = read_refraction(self.table)?;
+        Ok(MaterialKind::Dielectric {
+            ior,
+            dispersion,
+            tint: self.color_or("tint", Vec3::ONE)?,
+            absorption: self.table.get("absorption").map_or(Ok(absorption), |entry| entry.color())?,
+            roughness: self.roughness_or(0.0)?,
+            priority: self.table.get("priority").map_or(Ok(0), |entry| entry.integer32())?,
+        })
+    }
+
+    /// The material's colour, under the name that its type gives it.
+    fn color(&mut self, key: &'static str) -> Result<Vec3, Error> {
+        let entry = self.table.require(key, COLOR)?;
+        let (color, texture) = self.reader.color(&entry)?;
+        self.textures.color = texture;
+        Ok(color)
+    }
+
+    fn color_or(&mut self, key: &'static str, default: Vec3) -> Result<Vec3, Error> {
+        if self.table.get(key).is_some() { self.color(key) } else { Ok(default) }
+    }
+
+    fn roughness_or(&mut self, default: f32) -> Result<f32, Error> {
+        let Some(entry) = self.table.get("roughness") else { return Ok(default) };
+        let (roughness, texture) = self.reader.number(&entry, DefaultChannel::Color(GLTF_ROUGHNESS))?;
+        self.textures.roughness = texture;
+        Ok(roughness)
+    }
+
+    fn metallic_or(&mut self, default: f32) -> Result<f32, Error> {
+        let Some(entry) = self.table.get("metallic") else { return Ok(default) };
+        let (metallic, texture) = self.reader.number(&entry, DefaultChannel::Color(GLTF_METALLIC))?;
+        self.textures.metallic = texture;
+        Ok(metallic)
+    }
+
+    fn emission(&mut self) -> Result<Vec3, Error> {
+        let Some(entry) = self.table.get("emission") else { return Ok(Vec3::ZERO) };
+        let (emission, texture) = self.reader.color(&entry)?;
+        self.textures.emission = texture;
+        Ok(emission)
+    }
+
+    /// The opacity and its cutoff.
+    fn opacity(&mut self) -> Result<(f32, Option<f32>), Error> {
+        let Some(entry) = self.table.get("opacity") else { return Ok((1.0, None)) };
+        let Opacity { factor, texture, cutoff } = self.reader.opacity(&entry)?;
+        self.textures.opacity = texture;
+        Ok((factor, cutoff))
+    }
 }
 
 /// The index of refraction η + ik of a conductor, from `metal` or from `eta` and `k`.

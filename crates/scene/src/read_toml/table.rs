@@ -2,7 +2,7 @@
 
 use std::{fmt::Display, sync::Arc};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toml::{
     Spanned,
     de::{DeTable, DeValue},
@@ -180,6 +180,11 @@ impl<'d> Entry<'d> {
         self.finite("a number")
     }
 
+    /// A finite number where a picture could stand as well.
+    pub(super) fn number_without_picture(&self) -> Result<f32, Error> {
+        self.finite("a number or a picture { image = \"FILE\" }")
+    }
+
     fn finite(&self, expected: &'static str) -> Result<f32, Error> {
         let written = match self.value.get_ref() {
             DeValue::Float(float) => float.as_str(),
@@ -190,6 +195,12 @@ impl<'d> Entry<'d> {
             Ok(number) if number.is_finite() => Ok(number),
             _ => Err(self.error(format!("is {written}; it must be finite and less than 3.4e38"))),
         }
+    }
+
+    /// A switch.
+    pub(super) fn boolean(&self) -> Result<bool, Error> {
+        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
+        Ok(*boolean)
     }
 
     /// A whole number that is not negative.
@@ -214,12 +225,6 @@ impl<'d> Entry<'d> {
             .map_err(|_| self.error(format!("is {}; it must be from {least} to {most}", integer.as_str())))
     }
 
-    /// `true` or `false`.
-    pub(super) fn boolean(&self) -> Result<bool, Error> {
-        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
-        Ok(*boolean)
-    }
-
     /// Three numbers.
     pub(super) fn vector(&self) -> Result<Vec3, Error> {
         self.three("3 numbers [x, y, z]")
@@ -228,6 +233,25 @@ impl<'d> Entry<'d> {
     /// Three numbers, or one that stands for all three.
     pub(super) fn color(&self) -> Result<Vec3, Error> {
         self.one_or_three("a colour: 3 numbers [r, g, b] or one number for gray")
+    }
+
+    /// Three numbers, or one that stands for all three, where a picture could stand as well.
+    pub(super) fn color_without_picture(&self) -> Result<Vec3, Error> {
+        self.one_or_three("a colour: 3 numbers [r, g, b], one number for gray or a picture { image = \"FILE\" }")
+    }
+
+    /// Two numbers.
+    pub(super) fn pair(&self) -> Result<Vec2, Error> {
+        self.numbers("2 numbers [u, v]").map(Vec2::from_array)
+    }
+
+    /// Two numbers, or one that stands for both.
+    pub(super) fn one_or_pair(&self) -> Result<Vec2, Error> {
+        let expected = "one number or 2 numbers [u, v]";
+        match self.value.get_ref() {
+            DeValue::Array(_) => self.numbers(expected).map(Vec2::from_array),
+            _ => self.finite(expected).map(Vec2::splat),
+        }
     }
 
     /// A factor for each axis, or one for all of them.
@@ -243,11 +267,19 @@ impl<'d> Entry<'d> {
     }
 
     fn three(&self, expected: &'static str) -> Result<Vec3, Error> {
+        self.numbers(expected).map(Vec3::from_array)
+    }
+
+    fn numbers<const N: usize>(&self, expected: &'static str) -> Result<[f32; N], Error> {
         let elements = match self.value.get_ref() {
-            DeValue::Array(array) if array.len() == 3 => self.elements(expected)?,
+            DeValue::Array(array) if array.len() == N => self.elements(expected)?,
             _ => return Err(self.wrong_type(expected)),
         };
-        Ok(Vec3::new(elements[0].number()?, elements[1].number()?, elements[2].number()?))
+        let mut numbers = [0.0; N];
+        for (number, element) in numbers.iter_mut().zip(elements) {
+            *number = element.number()?;
+        }
+        Ok(numbers)
     }
 
     pub(super) fn string(&self, expected: &'static str) -> Result<&'d str, Error> {
@@ -266,6 +298,21 @@ impl<'d> Entry<'d> {
         let array = self.value.get_ref().as_array().ok_or_else(|| self.wrong_type(expected))?;
         let element = |(index, value)| Self { value, key: format!("{}[{index}]", self.key), ..self.clone() };
         Ok(array.iter().enumerate().map(element).collect())
+    }
+
+    /// Whether the value is an array.
+    pub(super) fn is_array(&self) -> bool {
+        self.value.get_ref().is_array()
+    }
+
+    /// Whether the value is a table.
+    pub(super) fn is_table(&self) -> bool {
+        self.value.get_ref().is_table()
+    }
+
+    /// Whether the value is a table with this key.
+    pub(super) fn is_table_with(&self, key: &str) -> bool {
+        self.value.get_ref().as_table().is_some_and(|entries| entries.keys().any(|name| name.get_ref() == key))
     }
 
     /// The table that is the value, under the given name.

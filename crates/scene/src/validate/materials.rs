@@ -2,8 +2,11 @@
 
 use glam::Vec3;
 
-use super::at::{At, above};
-use crate::{Error, Material, MaterialKind, Scene, Subject};
+use super::{
+    at::{At, above},
+    textures::check_textures,
+};
+use crate::{Dispersion, Error, LONGEST_WAVELENGTH, Material, MaterialKind, SHORTEST_WAVELENGTH, Scene, Subject};
 
 /// The most materials of a scene: kernels pack a material's index in 16 bits.
 const MOST_MATERIALS: usize = 65_535;
@@ -25,7 +28,8 @@ fn check_material(index: usize, material: &Material) -> Result<(), Error> {
     let is_glass = matches!(material.kind, MaterialKind::Dielectric { .. } | MaterialKind::ThinWalled { .. });
     at.require(!is_glass || material.emission == Vec3::ZERO, "emission", || {
         format!("is {}, but glass takes no emission; it must be 0", material.emission)
-    })
+    })?;
+    check_textures(&at, material)
 }
 
 fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
@@ -46,8 +50,9 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             at.channels("k", k, 0.0.., "finite and 0 or greater")?;
             check_roughness(roughness)
         }
-        MaterialKind::Dielectric { ior, tint, absorption, roughness, priority: _ } => {
+        MaterialKind::Dielectric { ior, dispersion, tint, absorption, roughness, priority: _ } => {
             check_ior(ior)?;
+            check_dispersion(at, ior, dispersion)?;
             check_share("tint", tint)?;
             at.channels("absorption", absorption, 0.0.., "0 or greater (1/m)")?;
             check_roughness(roughness)
@@ -67,4 +72,20 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             check_roughness(roughness)
         }
     }
+}
+
+/// Steps, nm, at which the index of refraction is looked at.
+const INDEX_STEP: usize = 5;
+
+fn check_dispersion(at: &At, ior: f32, dispersion: Dispersion) -> Result<(), Error> {
+    if let Dispersion::Abbe(number) = dispersion {
+        at.number("abbe", number, above(0.0), "finite and greater than 0")?;
+    }
+    for nm in (SHORTEST_WAVELENGTH as usize..=LONGEST_WAVELENGTH as usize).step_by(INDEX_STEP) {
+        let index = dispersion.index(ior, nm as f64);
+        at.require(index.is_finite() && index > 0.0, "dispersion", || {
+            format!("makes the index of refraction {index} at {nm} nm; it must be finite and greater than 0")
+        })?;
+    }
+    Ok(())
 }

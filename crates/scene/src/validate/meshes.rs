@@ -28,9 +28,12 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
     ensure(mesh.normals.iter().all(is_unit), &|| "has a normal whose length is not 1".to_owned())?;
     let has_finite_uvs = mesh.uvs.iter().all(|uv| uv.is_finite());
     ensure(has_finite_uvs, &|| "has a texture coordinate that is not finite".to_owned())?;
-    ensure(mesh.chart != Chart::Natural || !mesh.uvs.is_empty(), &|| {
-        "has a natural chart but no texture coordinates; give it some or make the chart automatic".to_owned()
-    })?;
+    if let Chart::Natural(places) = &mesh.chart {
+        let are_sound = places.len() == vertices && places.iter().all(|place| place.is_finite());
+        ensure(are_sound, &|| {
+            format!("has a natural chart of {} places; it must have {vertices}, all of them finite", places.len())
+        })?;
+    }
     check_triangle_slots(mesh)?;
     ensure(mesh.degenerate_triangles() < triangles, &|| format!("has {triangles} triangles, all of zero area"))
 }

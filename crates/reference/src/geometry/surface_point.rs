@@ -1,0 +1,81 @@
+//! What a material and its pictures are at a point of a triangle.
+
+use glam::{DVec2, DVec3};
+
+use crate::bsdf::{Factors, PreparedMaterial};
+use crate::generator::Generator;
+use crate::texture::{color_at, number_at};
+
+use super::normal_map::mapped_normal;
+use super::triangle::weighted;
+use super::{Facing, Hit, Ray, World};
+
+impl World<'_> {
+    /// The surface that a ray of this direction meets.
+    pub fn facing(&self, hit: &Hit, direction: DVec3) -> Facing {
+        let triangle = &self.triangles[hit.triangle];
+        let mapped = self.prepared(hit.triangle).material.textures.normal.is_some();
+        let normal = mapped.then(|| self.shading_normal(hit));
+        triangle.facing(hit.barycentric, direction, normal)
+    }
+
+    /// The shading normal on the triangle's front, whoever looks: that of the normal map, else the interpolated one, else
+    /// the geometric one. Unit length.
+    pub fn shading_normal(&self, hit: &Hit) -> DVec3 {
+        let triangle = &self.triangles[hit.triangle];
+        let n = triangle.interpolated_normal(hit.barycentric).unwrap_or(triangle.normal_geometric);
+        let map = self.prepared(hit.triangle).material.textures.normal.as_ref();
+        map.map_or(n, |map| mapped_normal(map, triangle, hit.barycentric, n))
+    }
+
+    /// What the material's pictures multiply its numbers by.
+    pub(crate) fn factors(&self, hit: &Hit) -> Factors {
+        let prepared = self.prepared(hit.triangle);
+        if !prepared.varies {
+            return Factors::ONE;
+        }
+        Factors::at(&prepared.material.textures, self.uv(hit.triangle, hit.barycentric))
+    }
+
+    /// Radiance that a point of a triangle's front sends in each direction, W/(m² sr), given that the point stands.
+    pub fn emission(&self, triangle: usize, barycentric: DVec3) -> DVec3 {
+        let material = self.material(triangle);
+        let picture = material.textures.emission.as_ref();
+        material.emission.as_dvec3() * color_at(picture, self.uv(triangle, barycentric))
+    }
+
+    /// The probability that a ray meets a triangle at a point.
+    pub fn opacity(&self, triangle: usize, barycentric: DVec3) -> f64 {
+        let PreparedMaterial { material, has_holes, .. } = self.prepared(triangle);
+        if !has_holes {
+            return 1.0;
+        }
+        let picture = material.textures.opacity.as_ref();
+        let opacity = f64::from(material.opacity) * number_at(picture, self.uv(triangle, barycentric));
+        match material.opacity_cutoff {
+            Some(cutoff) if opacity >= f64::from(cutoff) => 1.0,
+            Some(_) => 0.0,
+            None => opacity,
+        }
+    }
+
+    /// Whether a ray meets the triangle that it hits, by a chance that belongs to the ray, the triangle and `key`.
+    pub(super) fn stands(&self, ray: &Ray, hit: &Hit, key: u64) -> bool {
+        if !self.has_holes {
+            return true;
+        }
+        let opacity = self.opacity(hit.triangle, hit.barycentric);
+        if opacity <= 0.0 || opacity >= 1.0 {
+            return opacity > 0.0;
+        }
+        let [origin, direction] = [ray.origin, ray.direction].map(|v| v.to_array().map(f64::to_bits));
+        let [a, b, c] = origin;
+        let [d, e, f] = direction;
+        Generator::new(&[key, hit.triangle as u64, a, b, c, d, e, f]).unit() < opacity
+    }
+
+    /// Texture coordinates of a point; (0, 0) where the mesh has none.
+    fn uv(&self, triangle: usize, barycentric: DVec3) -> DVec2 {
+        self.triangles[triangle].uvs.map_or(DVec2::ZERO, |uvs| weighted(uvs, barycentric))
+    }
+}

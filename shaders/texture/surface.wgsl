@@ -1,0 +1,102 @@
+// What pictures make of a surface at a point; docs/materials.md, "Textures".
+
+import package::geometry::surface::{interpolated_normal, SurfacePoint};
+import package::geometry::traverse::Hit;
+import package::layout::features::has_gloss;
+import package::layout::records::{load_material_textures, load_surface_texture, load_texture_coordinates};
+import package::layout::scene::{
+    Material, SurfaceTexture, TextureCoordinates, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, NONE,
+};
+import package::texture::lookup::{channel_of, interpolate_uv, picture_place, sample_texture};
+
+/// Roughness under which a surface is perfectly smooth.
+const SMOOTH: f32 = 0.03;
+/// Reflectance along the normal of the dielectric part of glTF's model.
+const DIELECTRIC_F0: f32 = 0.04;
+
+/// Slots of a material's pictures, in the order in which they are looked up.
+const SLOT_COLOR: u32 = 0u;
+const SLOT_ROUGHNESS: u32 = 1u;
+const SLOT_METALLIC: u32 = 2u;
+const SLOT_EMISSION: u32 = 3u;
+const SLOT_NORMAL: u32 = 4u;
+const SLOTS: u32 = 5u;
+
+/// A textured surface at a point.
+struct TexturedSurface {
+    material: Material,
+    /// Unit shading normal, on the side of the ray.
+    n_s: vec3<f32>,
+}
+
+/// The shading normal that a normal map's value `c` makes, on the front; `n` where the texture has no direction there.
+fn mapped_normal(texture: SurfaceTexture, strength: f32, c: vec3<f32>, coordinates: TextureCoordinates, triangle: Triangle, n: vec3<f32>) -> vec3<f32> {
+    let corner = picture_place(texture, coordinates.uv_01.xy);
+    let along_1 = picture_place(texture, coordinates.uv_01.zw) - corner;
+    let along_2 = picture_place(texture, coordinates.uv_2) - corner;
+    let turn = sign(along_1.x * along_2.y - along_2.x * along_1.y);
+    let t_0 = turn * (along_2.y * triangle.edge_1 - along_1.y * triangle.edge_2);
+    let b_0 = turn * (along_1.x * triangle.edge_2 - along_2.x * triangle.edge_1);
+    let across = t_0 - n * dot(n, t_0);
+    let size = length(across);
+    if turn == 0.0 || size == 0.0 {
+        return n;
+    }
+    let t = across / size;
+    let right = cross(n, t);
+    let b = select(-right, right, dot(right, b_0) >= 0.0);
+    let m = (2.0 * c - 1.0) * vec3<f32>(strength, strength, 1.0);
+    return normalize(m.x * t + m.y * b + m.z * n);
+}
+
+/// What follows from a material's colour, roughness and share of metal at the point.
+fn derive(source: Material) -> Material {
+    var material = source;
+    material.gloss = select(source.gloss * source.gloss, 0.0, source.gloss < SMOOTH);
+    let kind = source.kind & MATERIAL_KIND_BITS;
+    if has_gloss && kind == MATERIAL_COATED {
+        material.base = source.base / (source.ior * source.ior * (1.0 - source.base * source.extinction.x));
+    }
+    if has_gloss && kind == MATERIAL_METALLIC_ROUGHNESS {
+        let metallic = source.extinction.x;
+        let f_0 = mix(vec3<f32>(DIELECTRIC_F0), source.base, metallic);
+        let average = f_0 + (1.0 - f_0) / 21.0;
+        material.base = (1.0 - metallic) * source.base / max(1.0 - average, vec3<f32>(1e-30));
+        material.specular = f_0;
+    }
+    return material;
+}
+
+/// The surface at a hit, seen along `direction`, from its material and point before pictures.
+fn textured_surface(source: Material, point: SurfacePoint, hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
+    let textures = load_material_textures(triangle.material);
+    let coordinates = load_texture_coordinates(hit.triangle);
+    let uv = interpolate_uv(coordinates, hit.barycentric);
+    var material = source;
+    var n_s = point.n_s;
+    let slots = array<u32, SLOTS>(textures.color, textures.roughness, textures.metallic, textures.emission, textures.normal);
+    // A loop rather than five calls, for calls are inlined.
+    for (var slot = 0u; slot < SLOTS; slot++) {
+        if slots[slot] == NONE {
+            continue;
+        }
+        let texture = load_surface_texture(slots[slot]);
+        let value = sample_texture(texture, uv);
+        let number = channel_of(texture, value);
+        let color = select(vec3<f32>(1.0), value.xyz, slot == SLOT_COLOR);
+        material.base *= color;
+        material.tint *= color;
+        material.specular *= select(vec3<f32>(1.0), color, (source.kind & MATERIAL_KIND_BITS) == MATERIAL_MIRROR);
+        material.gloss *= select(1.0, number, slot == SLOT_ROUGHNESS);
+        material.extinction *= select(1.0, number, slot == SLOT_METALLIC);
+        material.emission *= select(vec3<f32>(1.0), value.xyz, slot == SLOT_EMISSION);
+        if slot == SLOT_NORMAL {
+            let smooth_normal = interpolated_normal(hit, triangle, point);
+            let n = select(-smooth_normal, smooth_normal, point.front);
+            let mapped = mapped_normal(texture, textures.normal_strength, value.xyz, coordinates, triangle, n);
+            let turned = select(-mapped, mapped, point.front);
+            n_s = select(n_s, turned, dot(direction, turned) < 0.0);
+        }
+    }
+    return TexturedSurface(derive(material), n_s);
+}
