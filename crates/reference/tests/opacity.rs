@@ -29,7 +29,7 @@ const WITHIN: Sphere = Sphere { center: DVec3::Y, radius: 0.7 };
 fn photons(scene: &Scene, count: u32) -> Vec<PhotonPath> {
     let world = World::new(scene);
     let emission = Emission::Toward(&[WITHIN]);
-    let job = PhotonJob { world: &world, maps: &[], light: 0, emission, seed: 1, photons: 0..count };
+    let job = PhotonJob { world: &world, maps: &[], light: 0, emission, guide: None, seed: 1, photons: 0..count };
     (0..count).map(|photon| trace_one(&job, photon)).collect()
 }
 

@@ -166,7 +166,7 @@ fn ledger_of(scene: &Scene, casters: &[Sphere], count: u32) -> Ledger {
     let world = World::new(scene);
     let maps = vec![None; scene.objects.len()];
     let emission = Emission::Toward(casters);
-    let job = PhotonJob { world: &world, maps: &maps, light: 0, emission, seed: 1, photons: 0..count };
+    let job = PhotonJob { world: &world, maps: &maps, light: 0, emission, guide: None, seed: 1, photons: 0..count };
     let ledger = trace(&job).ledger;
     let error = (ledger.accounted() - ledger.emitted).abs() / ledger.emitted;
     assert!(error.max_element() < 1e-12, "the ledger misses {error} of what was emitted");
@@ -225,7 +225,7 @@ fn three_ways(scene: &Scene, n: DVec3, caster: Sphere, samples: u32) -> [Estimat
     let photons = 1 << 18;
     let maps = vec![None; scene.objects.len()];
     let emission = Emission::Aimed(&discs);
-    let job = PhotonJob { world: &world, maps: &maps, light: 0, emission, seed: 1, photons: 0..photons };
+    let job = PhotonJob { world: &world, maps: &maps, light: 0, emission, guide: None, seed: 1, photons: 0..photons };
     let deposited = trace(&job).ledger.deposited / (f64::from(photons) * 0.36);
     [traced.via_casters[0], found, Estimate { mean: deposited, variance: DVec3::ZERO }]
 }
