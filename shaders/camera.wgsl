@@ -2,6 +2,7 @@
 // see and the irradiance in the energy map. docs/materials.md defines what surfaces do.
 
 import package::bsdf::base::{base_bsdf, gloss_reflectance};
+import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{evaluate_specular, outer_interface, scatter_specular, Interface};
 import package::emitter::illumination::{illuminate, FAR};
 import package::emitter::sky::{light_probability, sky_radiance};
@@ -10,16 +11,17 @@ import package::film::texels::footprint;
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{camera_params, film, irradiance, sightings, Sighting};
-import package::layout::features::{has_textures, notes_sightings};
+import package::layout::features::{has_dispersion, has_textures, notes_sightings};
 import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::layout::scene::{
     Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
     MATERIAL_TEXTURED, NONE,
 };
-import package::medium::media::{media_beyond, medium_ior, transmittance};
+import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
+import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
 import package::texture::surface::textured_surface;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
@@ -51,7 +53,9 @@ struct Path {
     gathered: u32,
     /// Choices between lobes made.
     choices: u32,
-    first_choice: f32,
+    /// The number of the first choice, in scenes with dispersion that of the wavelength.
+    fifth_number: f32,
+    wavelength: Wavelength,
     /// Density with which the last surface drew the direction, 1/sr, where next-event estimation could have found the same light; 0 where not.
     lobe_pdf: f32,
     /// Whether what lights send along the ray, straight or through casters, is already counted: by next-event estimation or the map of
@@ -97,11 +101,22 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.direction = normalize(camera_params.focus_distance * view - on_lens);
     path.beta = vec3<f32>(camera_params.exposure);
     path.media = camera_params.media;
-    path.first_choice = numbers.fifth;
+    path.fifth_number = numbers.fifth;
+    path.wavelength = first_wavelength();
     path.goes_on = true;
     path.seed = seed;
     path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
     return path;
+}
+
+/// Gives a path one wavelength.
+fn take_wavelength(path: ptr<function, Path>) {
+    let drawn = draw_wavelength((*path).fifth_number);
+    (*path).wavelength = drawn.wavelength;
+    // The exposure has divided by the square of the stated index where the camera stands.
+    let stated = medium_ior(camera_params.media, Wavelength(-1.0, vec3<f32>(0.0)));
+    let index = stated / medium_ior(camera_params.media, drawn.wavelength);
+    (*path).beta = at_wavelength((*path).beta, drawn.wavelength) * drawn.weight * (index * index);
 }
 
 /// A surface that a path has met.
@@ -117,6 +132,9 @@ struct Vertex {
     beyond: vec4<u32>,
     /// Reflectance of the gloss over a receiver's base, seen along the path; 0 without either.
     gloss: vec3<f32>,
+    /// The number of the choice between lobes, and its place among the path's choices.
+    u: f32,
+    choice: u32,
     /// Probability with which the path takes the specular lobe.
     specular_chance: f32,
 }
@@ -128,17 +146,35 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
     if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
         let textured = textured_surface(material, point, hit, triangle, (*path).direction);
         material = textured.material;
-        point.n_s = textured.n_s;
+        point = textured.point;
     }
     let media = (*path).media;
-    let ior = medium_ior(media);
+    let kind = material.kind & MATERIAL_KIND_BITS;
+    var beyond = media;
+    let choice = (*path).choices;
+    var u = padded_1(camera_params.sample_index, (*path).seed, choice);
+    u = select(u, (*path).fifth_number, choice == 0u && !has_dispersion);
+    if kind == MATERIAL_DIELECTRIC {
+        beyond = media_beyond(media, material.medium, point.front);
+        let exists = beyond.x != media.x;
+        if exists && (*path).wavelength.number < 0.0 && (is_dispersive(media) || is_dispersive(beyond)) {
+            let cos_i = -dot((*path).direction, point.n_s);
+            let split = split_colors(media, beyond, cos_i, material.gloss <= 0.0, u, (*path).fifth_number);
+            (*path).fifth_number = split.xi;
+            if split.takes_wavelength {
+                take_wavelength(path);
+            }
+            u = split.u;
+            (*path).beta *= at_wavelength(split.factor, (*path).wavelength);
+        }
+    }
+    let ior = medium_ior(media, (*path).wavelength);
     var vertex = Vertex(
-        point, material, material.kind & MATERIAL_KIND_BITS, (material.kind & MATERIAL_CASTER) != 0u,
-        (material.kind & MATERIAL_RECEIVER) != 0u, outer_interface(material, ior), media, vec3<f32>(0.0), 1.0,
+        point, material, kind, (material.kind & MATERIAL_CASTER) != 0u, (material.kind & MATERIAL_RECEIVER) != 0u,
+        outer_interface(material, ior), beyond, vec3<f32>(0.0), u, choice, 1.0,
     );
-    if vertex.kind == MATERIAL_DIELECTRIC {
-        vertex.beyond = media_beyond(media, material.medium, point.front);
-        vertex.sides = Interface(ior, ior / medium_ior(vertex.beyond));
+    if kind == MATERIAL_DIELECTRIC {
+        vertex.sides = Interface(ior, ior / medium_ior(beyond, (*path).wavelength));
     }
     if vertex.is_receiver {
         vertex.gloss = gloss_reflectance(material, -dot((*path).direction, point.n_s), vertex.sides);
@@ -152,7 +188,7 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
 
 /// Adds what the surface itself shines, but for what next-event estimation has counted.
 fn add_emission(path: ptr<function, Path>, vertex: Vertex, t: f32) {
-    let emission = vertex.material.emission;
+    let emission = at_wavelength(vertex.material.emission, (*path).wavelength);
     let cos_light = -dot((*path).direction, vertex.point.n_g);
     let light_pdf = vertex.material.emission_pdf_area * t * t / max(cos_light, 1e-6);
     let pdf = (*path).lobe_pdf;
@@ -171,9 +207,10 @@ fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     let place = footprint(hit, object, vertex.point.front);
     let caustic = place.weights.x * map_irradiance(place.texels.x) + place.weights.y * map_irradiance(place.texels.y)
         + place.weights.z * map_irradiance(place.texels.z) + place.weights.w * map_irradiance(place.texels.w);
-    var sent = vertex.material.base / PI * (1.0 - vertex.gloss) * caustic;
+    let reflected = vertex.material.base / PI * (1.0 - vertex.gloss);
+    var sent = at_wavelength(reflected, (*path).wavelength) * at_wavelength(caustic, (*path).wavelength);
     if vertex.kind == MATERIAL_PHONG {
-        sent += vertex.material.tint * camera_params.ambient;
+        sent += at_wavelength(vertex.material.tint, (*path).wavelength) * at_wavelength(camera_params.ambient, (*path).wavelength);
     }
     (*path).radiance += (*path).beta * sent;
     if notes_sightings {
@@ -218,8 +255,10 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
     if transmitted {
         media = vertex.beyond;
     }
-    let brought = (*path).beta * reflected * light.arriving * transmittance(media, light.distance);
-    if any(brought > vec3<f32>(0.0)) {
+    let wavelength = (*path).wavelength;
+    let arriving = at_wavelength(light.arriving, wavelength) * transmittance(media, light.distance, wavelength);
+    let brought = (*path).beta * at_wavelength(reflected, wavelength) * arriving;
+    if any(brought != vec3<f32>(0.0)) {
         (*path).shadow_pending = true;
         (*path).shadow_origin = leave(point, wi);
         (*path).shadow_direction = wi;
@@ -234,7 +273,7 @@ fn go_on_specular(path: ptr<function, Path>, vertex: Vertex, u: f32, choice: u32
     let point = vertex.point;
     let v = padded_2(camera_params.sample_index, (*path).seed, SLOT_MICROFACET + 2u * choice);
     let event = scatter_specular(vertex.material, d, point.n_g, point.n_s, vertex.sides, u, v);
-    (*path).beta *= event.weight / vertex.specular_chance;
+    (*path).beta *= at_wavelength(event.weight, (*path).wavelength) / vertex.specular_chance;
     if event.transmitted {
         if vertex.kind == MATERIAL_DIELECTRIC {
             // Radiance is squeezed into a narrower cone in a denser medium: L/n² is what stays.
@@ -247,7 +286,7 @@ fn go_on_specular(path: ptr<function, Path>, vertex: Vertex, u: f32, choice: u32
     (*path).lights_counted = (*path).lights_counted && vertex.is_caster;
     (*path).origin = leave(point, event.direction);
     (*path).direction = event.direction;
-    (*path).goes_on = any((*path).beta > vec3<f32>(0.0));
+    (*path).goes_on = any((*path).beta != vec3<f32>(0.0));
 }
 
 /// Sends the path on from the base, in proportion to the cosine.
@@ -257,21 +296,22 @@ fn go_on_diffuse(path: ptr<function, Path>, vertex: Vertex) {
     let u = padded_2(camera_params.sample_index, (*path).seed, slot + 3u);
     let wi = cosine_hemisphere(point.n_s, u);
     let toward_wi = 1.0 - gloss_reflectance(vertex.material, dot(wi, point.n_s), vertex.sides);
-    (*path).beta *= vertex.material.base * (1.0 - vertex.gloss) * toward_wi / (1.0 - vertex.specular_chance);
+    let reflected = vertex.material.base * (1.0 - vertex.gloss) * toward_wi;
+    (*path).beta *= at_wavelength(reflected, (*path).wavelength) / (1.0 - vertex.specular_chance);
     (*path).lobe_pdf = 0.0;
     (*path).lights_counted = true;
     (*path).origin = leave(point, wi);
     (*path).direction = wi;
-    (*path).goes_on = dot(wi, point.n_g) > 0.0 && any((*path).beta > vec3<f32>(0.0));
+    (*path).goes_on = dot(wi, point.n_g) > 0.0 && any((*path).beta != vec3<f32>(0.0));
 }
 
 /// Ends the path by chance in proportion to what it can still bring.
 fn play_roulette(path: ptr<function, Path>) {
-    let beta = (*path).beta;
+    let beta = abs((*path).beta);
     let chance = min(max(beta.x, max(beta.y, beta.z)) / camera_params.exposure, 1.0);
     let slot = SLOT_VERTEX + 8u * ((*path).gathered - 1u);
     if padded_1(camera_params.sample_index, (*path).seed, slot + 5u) < chance {
-        (*path).beta = beta / chance;
+        (*path).beta /= chance;
     } else {
         (*path).goes_on = false;
     }
@@ -304,20 +344,15 @@ fn meet_surface(path: ptr<function, Path>, hit: Hit) {
     if !vertex.is_caster && !vertex.is_receiver {
         return;
     }
-    var u = 0.0;
-    var choice = (*path).choices;
-    if vertex.kind != MATERIAL_MIRROR {
-        u = padded_1(camera_params.sample_index, (*path).seed, choice);
-        u = select(u, (*path).first_choice, choice == 0u);
-        (*path).choices += 1u;
-    }
+    var u = vertex.u;
+    (*path).choices += select(0u, 1u, vertex.kind != MATERIAL_MIRROR);
     let takes_specular = u < vertex.specular_chance;
     if takes_specular && vertex.is_receiver {
         // What chose the lobe chooses nothing more.
         u = 0.0;
     }
     if takes_specular {
-        go_on_specular(path, vertex, u, choice);
+        go_on_specular(path, vertex, u, vertex.choice);
     } else {
         go_on_diffuse(path, vertex);
     }
@@ -340,7 +375,8 @@ fn meet_sphere(path: ptr<function, Path>, sphere: SphereHit) {
     let solid_angle = 2.0 * PI * cone_height(light.extent / distance((*path).origin, light.position));
     let pdf = (*path).lobe_pdf;
     let weight = select(1.0, pdf / (pdf + light_probability(sphere.light) / solid_angle), pdf > 0.0);
-    let seen = (*path).beta * transmittance((*path).media, sphere.t) * light.strength * weight;
+    let strength = at_wavelength(light.strength, (*path).wavelength);
+    let seen = (*path).beta * transmittance((*path).media, sphere.t, (*path).wavelength) * strength * weight;
     (*path).radiance += select(seen, vec3<f32>(0.0), (*path).lights_counted);
 }
 
@@ -351,7 +387,7 @@ fn meet_sky(path: ptr<function, Path>) {
     if !(*path).lights_counted {
         beyond += sky_radiance(camera_params.first_sky_light, camera_params.light_count, (*path).direction, (*path).lobe_pdf);
     }
-    (*path).radiance += (*path).beta * beyond;
+    (*path).radiance += (*path).beta * at_wavelength(beyond, (*path).wavelength);
 }
 
 /// Traces the path's shadow ray, then the ray along which it goes on, and lets it meet what is there.
@@ -377,7 +413,7 @@ fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
         return;
     }
     if hit.triangle != NONE {
-        (*path).beta *= transmittance((*path).media, hit.t);
+        (*path).beta *= transmittance((*path).media, hit.t, (*path).wavelength);
         meet_surface(path, hit);
     } else if sphere.t < FAR {
         meet_sphere(path, sphere);

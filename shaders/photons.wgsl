@@ -1,29 +1,30 @@
 // Phase 1: photons leave the lights and fill the energy maps. docs/photon-paths.md defines each step.
 
 import package::bsdf::base::gloss_reflectance;
+import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
 import package::emitter::emission::{emit, Emission};
 import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
-import package::layout::features::{has_footprints, has_guide, has_textures, photon_light_kind};
 import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
-import package::sampling::warp::frame;
-
+import package::layout::features::{has_dispersion, has_footprints, has_guide, has_textures, photon_light_kind};
 import package::layout::records::{load_corners, load_material, load_object, load_triangle};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
     energy, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
-    LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
+    LEDGER_DISPERSION, LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
     Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
     LIGHT_DISTANT, LIGHT_ENVIRONMENT, MATERIAL_THIN_WALLED, Triangle,
 };
-import package::medium::media::{media_beyond, medium_ior, transmittance};
+import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
+import package::sampling::warp::frame;
+import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
 import package::texture::surface::textured_surface;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
@@ -45,8 +46,9 @@ struct Photon {
     depth: u32,
     /// Choices made.
     choices: u32,
-    /// The number of its first choice.
-    first_choice: f32,
+    /// The number of its first choice, in scenes with dispersion that of its wavelength.
+    fifth_number: f32,
+    wavelength: Wavelength,
     /// How its ray changes over its part of the emission.
     differential: Differential,
     /// Whether that is known: no rough surface has spread it.
@@ -63,7 +65,7 @@ var<private> accounts: array<vec3<i32>, LEDGER_ACCOUNTS>;
 var<private> deposits: u32;
 
 fn to_units(beta: vec3<f32>) -> vec3<i32> {
-    return vec3<i32>(round(min(beta * photon_params.units_per_watt, vec3<f32>(MAX_UNITS))));
+    return vec3<i32>(round(clamp(beta * photon_params.units_per_watt, vec3<f32>(-MAX_UNITS), vec3<f32>(MAX_UNITS))));
 }
 
 /// Whether photons are thrown away but for where they land.
@@ -231,22 +233,34 @@ fn start_photon(place: u32) -> Photon {
         landings[index] = Landing(NONE, 0.0, guided.cells.x, guided.cells.y);
     }
     let emission = emit(guided.numbers);
-    let beta = emission.flux * (photon_params.flux_factor / guided.density);
+    let wavelength = first_wavelength();
+    let beta = at_wavelength(emission.flux * (photon_params.flux_factor / guided.density), wavelength);
     let units = to_units(beta);
     accounts[LEDGER_EMITTED] += units;
     return Photon(
-        index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth,
+        index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth, wavelength,
         emitted_differential(emission, index, guided.density), has_footprints,
     );
 }
 
-/// Multiplies a photon's flux; the change goes to `account`.
-fn change_flux(photon: ptr<function, Photon>, factor: vec3<f32>, account: u32) {
-    let beta = (*photon).beta * factor;
+/// Gives a photon another flux; the change goes to `account`.
+fn set_flux(photon: ptr<function, Photon>, beta: vec3<f32>, account: u32) {
     let units = to_units(beta);
     accounts[account] += (*photon).units - units;
     (*photon).beta = beta;
     (*photon).units = units;
+}
+
+/// Multiplies a photon's flux by a color; the change goes to `account`.
+fn change_flux(photon: ptr<function, Photon>, factor: vec3<f32>, account: u32) {
+    set_flux(photon, (*photon).beta * at_wavelength(factor, (*photon).wavelength), account);
+}
+
+/// Gives a photon one wavelength.
+fn take_wavelength(photon: ptr<function, Photon>) {
+    let drawn = draw_wavelength((*photon).fifth_number);
+    (*photon).wavelength = drawn.wavelength;
+    set_flux(photon, at_wavelength((*photon).beta, drawn.wavelength) * drawn.weight, LEDGER_DISPERSION);
 }
 
 /// Adds a photon's flux to the four texels around a hit; their integers sum to its units exactly.
@@ -254,7 +268,7 @@ fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
     let place = footprint(hit, object, front);
     if is_pilot() {
         landings[(*photon).index].texel = place.texels.x;
-        landings[(*photon).index].flux = dot((*photon).beta, vec3<f32>(1.0 / 3.0));
+        landings[(*photon).index].flux = dot(abs((*photon).beta), vec3<f32>(1.0 / 3.0));
         return;
     }
     let units = (*photon).units;
@@ -279,7 +293,7 @@ fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
 /// The number of choice `choice` of a photon.
 fn choice_number(photon: ptr<function, Photon>, choice: u32) -> f32 {
     let later = padded_1((*photon).index, photon_params.seed, choice);
-    return select(later, (*photon).first_choice, choice == 0u);
+    return select(later, (*photon).fifth_number, choice == 0u && !has_dispersion);
 }
 
 /// Lets a photon end on a receiver's base.
@@ -288,7 +302,7 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
     if (*photon).depth == 0u {
         accounts[LEDGER_DIRECT] += (*photon).units;
     } else {
-        let factor = landing_factor((*photon).direction, point.n_g, point.n_s);
+        let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
         change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         accounts[LEDGER_DEPOSITED] += (*photon).units;
         if has_footprints && (*photon).has_footprint && !is_pilot() {
@@ -309,7 +323,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
         let textured = textured_surface(material, point, hit, triangle, d);
         material = textured.material;
-        point.n_s = textured.n_s;
+        point = textured.point;
     }
     if has_footprints {
         transfer_differential(photon, hit.t, point.n_g);
@@ -319,9 +333,9 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let is_receiver = (material.kind & MATERIAL_RECEIVER) != 0u;
 
     let media = (*photon).media;
-    let ior = medium_ior(media);
     var beyond = media;
-    var sides = outer_interface(material, ior);
+    let choice = (*photon).choices;
+    var u = choice_number(photon, choice);
     if kind == MATERIAL_DIELECTRIC {
         beyond = media_beyond(media, material.medium, point.front);
         if beyond.x == media.x {
@@ -331,11 +345,22 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
             (*photon).depth += 1u;
             return true;
         }
-        sides = Interface(ior, ior / medium_ior(beyond));
+        if (*photon).wavelength.number < 0.0 && (is_dispersive(media) || is_dispersive(beyond)) {
+            let split = split_colors(media, beyond, -dot(d, point.n_s), material.gloss <= 0.0, u, (*photon).fifth_number);
+            (*photon).fifth_number = split.xi;
+            if split.takes_wavelength {
+                take_wavelength(photon);
+            }
+            u = split.u;
+            change_flux(photon, split.factor, LEDGER_DISPERSION);
+        }
+    }
+    let ior = medium_ior(media, (*photon).wavelength);
+    var sides = outer_interface(material, ior);
+    if kind == MATERIAL_DIELECTRIC {
+        sides = Interface(ior, ior / medium_ior(beyond, (*photon).wavelength));
     }
 
-    let choice = (*photon).choices;
-    var u = choice_number(photon, choice);
     (*photon).choices += select(0u, 1u, is_caster && kind != MATERIAL_MIRROR);
     var gloss_chance = 1.0;
     if is_receiver {
@@ -430,7 +455,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             continue;
         }
         if photon.media.x != 0u {
-            change_flux(&photon, transmittance(photon.media, hit.t), LEDGER_ABSORBED);
+            change_flux(&photon, transmittance(photon.media, hit.t, photon.wavelength), LEDGER_ABSORBED);
         }
         if met_light {
             accounts[LEDGER_ABSORBED] += photon.units;

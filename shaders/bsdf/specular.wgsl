@@ -115,9 +115,9 @@ fn adjoint_factor(d: vec3<f32>, n_g: vec3<f32>, event: SpecularEvent) -> f32 {
     return min((wi_s * wo_g) / (wi_g * wo_s), ADJOINT_LIMIT);
 }
 
-/// The factor by which the flux of a photon along `d` counts as irradiance on a surface of normal n_s.
-fn landing_factor(d: vec3<f32>, n_g: vec3<f32>, n_s: vec3<f32>) -> f32 {
-    return min(abs(dot(d, n_s)) / abs(dot(d, n_g)), ADJOINT_LIMIT);
+/// The factor by which the flux of a photon along `d` counts as irradiance on a surface of normal `n`.
+fn landing_factor(d: vec3<f32>, n_g: vec3<f32>, n: vec3<f32>) -> f32 {
+    return min(max(-dot(d, n), 0.0) / abs(dot(d, n_g)), ADJOINT_LIMIT);
 }
 
 /// A lobe's value for two directions.

@@ -12,6 +12,8 @@ struct SurfacePoint {
     n_g: vec3<f32>,
     /// Unit shading normal, on the same side.
     n_s: vec3<f32>,
+    /// Unit normal as interpolated or mapped, turned with n_g, even where it faces away from the ray.
+    n_smooth: vec3<f32>,
     /// Whether the ray came from the front.
     front: bool,
     /// How far a ray's origin is moved off the surface, metres.
@@ -35,7 +37,7 @@ fn off_surface(triangle: Triangle, position: vec3<f32>, n: vec3<f32>) -> vec3<f3
     return position + offset_length(triangle) * n;
 }
 
-/// The normal interpolated between a triangle's corners, turned like the geometric one, which it is where there are none.
+/// The normal interpolated between a triangle's corners, turned like the geometric one; that where the corners have none.
 fn interpolated_normal(hit: Hit, triangle: Triangle, point: SurfacePoint) -> vec3<f32> {
     if (triangle.flags & TRIANGLE_SMOOTH) == 0u {
         return point.n_g;
@@ -53,10 +55,10 @@ fn surface_point(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> SurfaceP
     let outward = normalize(cross(triangle.edge_1, triangle.edge_2));
     let front = dot(direction, outward) < 0.0;
     let n_g = select(-outward, outward, front);
-    var point = SurfacePoint(position, n_g, n_g, front, offset_length(triangle));
-    let n_s = interpolated_normal(hit, triangle, point);
-    if dot(direction, n_s) < 0.0 {
-        point.n_s = n_s;
+    var point = SurfacePoint(position, n_g, n_g, n_g, front, offset_length(triangle));
+    point.n_smooth = interpolated_normal(hit, triangle, point);
+    if dot(direction, point.n_smooth) < 0.0 {
+        point.n_s = point.n_smooth;
     }
     return point;
 }

@@ -17,6 +17,8 @@ override has_environment: bool = true;
 override has_textures: bool = true;
 /// Whether rays may pass surfaces as if they were not there.
 override has_holes: bool = true;
+/// Whether light has wavelengths.
+override has_dispersion: bool = true;
 /// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.
 override photon_light_kind: u32 = 0u;
 /// Whether photons lay their flux over the footprint of the part of the emission that they stand for.

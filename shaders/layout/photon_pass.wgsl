@@ -84,8 +84,9 @@ const LEDGER_ABSORBED: u32 = 3u;
 const LEDGER_ESCAPED: u32 = 4u;
 const LEDGER_CUT_OFF: u32 = 5u;
 const LEDGER_SHADING_NORMALS: u32 = 6u;
+const LEDGER_DISPERSION: u32 = 7u;
 /// Accounts in a light's ledger.
-const LEDGER_ACCOUNTS: u32 = 7u;
+const LEDGER_ACCOUNTS: u32 = 8u;
 
 /// What the photon pass counts.
 struct PhotonLedger {

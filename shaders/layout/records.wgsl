@@ -1,9 +1,9 @@
 // Records of the scene's textures.
 
 import package::layout::scene::{
-    corners, emitting_triangles, environment, lights, material_textures, materials, nodes, objects, surface_textures, texture_coordinates,
+    corners, emitting_triangles, environment, lights, material_textures, materials, nodes, objects, spectra, surface_textures, texture_coordinates,
     texture_texels, triangles, BvhNode, Light, Material, MaterialTextures, Object, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
-    RECORDS_WIDTH_BITS,
+    RECORDS_WIDTH_BITS, WAVELENGTH_STEPS,
 };
 
 /// The place of a texel, counted row by row.
@@ -64,9 +64,22 @@ fn load_material(index: u32) -> Material {
     );
 }
 
-/// The index of refraction alone of a material.
-fn load_ior(index: u32) -> f32 {
-    return bitcast<f32>(textureLoad(materials, record_texel(5u * index + 1u), 0).w);
+/// A dielectric's index of refraction.
+struct StatedIndex {
+    /// The index, or of one with dispersion that at the stated wavelength.
+    ior: f32,
+    /// Its row among the spectra; negative without dispersion.
+    row: f32,
+}
+
+fn load_index(material: u32) -> StatedIndex {
+    let texel = bitcast<vec4<f32>>(textureLoad(materials, record_texel(5u * material + 1u), 0));
+    return StatedIndex(texel.w, texel.x);
+}
+
+/// A dielectric's indices of refraction for red, green and blue light as a whole.
+fn load_colored_index(material: u32) -> vec3<f32> {
+    return bitcast<vec3<f32>>(textureLoad(materials, record_texel(5u * material), 0).xyz);
 }
 
 /// The absorption coefficient alone of a dielectric, 1/m.
@@ -140,4 +153,47 @@ fn load_texture_texel(index: u32) -> vec4<f32> {
     let pair = textureLoad(texture_texels, record_texel(index >> 1u), 0);
     let halves = select(pair.xy, pair.zw, (index & 1u) != 0u);
     return vec4<f32>(unpack2x16float(halves.x), unpack2x16float(halves.y));
+}
+
+/// The number ξ of the wavelength that all light has, or negative.
+fn load_fixed_wavelength() -> f32 {
+    return bitcast<f32>(textureLoad(spectra, record_texel(0u), 0).x);
+}
+
+/// A place between two steps of ξ.
+struct WavelengthStep {
+    index: u32,
+    part: f32,
+}
+
+fn wavelength_step(number: f32) -> WavelengthStep {
+    let at = number * f32(WAVELENGTH_STEPS);
+    let index = min(u32(at), WAVELENGTH_STEPS - 1u);
+    return WavelengthStep(index, at - f32(index));
+}
+
+/// The color of a wavelength.
+struct WavelengthColor {
+    /// That of white light of this wavelength alone, over the density with which it is drawn.
+    weight: vec3<f32>,
+    /// The values there of the primaries' spectra.
+    primaries: vec3<f32>,
+}
+
+fn load_color_of_wavelength(number: f32) -> WavelengthColor {
+    let step = wavelength_step(number);
+    let first = 1u + 2u * step.index;
+    let weight_0 = bitcast<vec3<f32>>(textureLoad(spectra, record_texel(first), 0).xyz);
+    let primaries_0 = bitcast<vec3<f32>>(textureLoad(spectra, record_texel(first + 1u), 0).xyz);
+    let weight_1 = bitcast<vec3<f32>>(textureLoad(spectra, record_texel(first + 2u), 0).xyz);
+    let primaries_1 = bitcast<vec3<f32>>(textureLoad(spectra, record_texel(first + 3u), 0).xyz);
+    return WavelengthColor(mix(weight_0, weight_1, step.part), mix(primaries_0, primaries_1, step.part));
+}
+
+/// The index of refraction in a row of the spectra at a wavelength.
+fn load_index_at(row: u32, number: f32) -> f32 {
+    let step = wavelength_step(number);
+    let rows = 1u + 2u * (WAVELENGTH_STEPS + 1u);
+    let pair = bitcast<vec2<f32>>(textureLoad(spectra, record_texel(rows + WAVELENGTH_STEPS * row + step.index), 0).xy);
+    return mix(pair.x, pair.y, step.part);
 }

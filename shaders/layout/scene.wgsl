@@ -116,11 +116,11 @@ struct Object {
 
 /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
 struct Material {
-    /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture.
+    /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture. Of a dielectric its indices for red, green and blue.
     base: vec3<f32>,
     /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
     kind: u32,
-    /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share.
+    /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
     specular: vec3<f32>,
     /// Index of refraction; exponent of Phong's specular lobe.
     ior: f32,
@@ -206,6 +206,9 @@ const NONE: u32 = 0xffffffffu;
 /// software adapters read texels far faster than storage buffers, and a texture may be larger than a storage binding.
 const RECORDS_WIDTH_BITS: u32 = 13u;
 
+/// Steps of what the spectra's tables hold, evenly in ξ.
+const WAVELENGTH_STEPS: u32 = 512u;
+
 /// BvhNode records of 5 texels.
 @group(0) @binding(0) var nodes: texture_2d<u32>;
 /// Triangle records of 3 texels, floating-point numbers as their bits.
@@ -232,3 +235,7 @@ const RECORDS_WIDTH_BITS: u32 = 13u;
 @group(0) @binding(10) var surface_textures: texture_2d<u32>;
 /// The pictures' texels of four half-precision numbers, two in each, row by row from the top.
 @group(0) @binding(11) var texture_texels: texture_2d<u32>;
+/// Floating-point numbers as their bits. First a texel whose x is the number ξ of all light's wavelength, or negative. Then, for each step of ξ, two texels: the
+/// weight of its wavelength, and the primaries' spectra there. Then a row for each dielectric with dispersion, of a texel for each step: its
+/// index of refraction there and at the next.
+@group(0) @binding(12) var spectra: texture_2d<u32>;

@@ -160,11 +160,11 @@ shared_structs! {
     }
     /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
     struct Material {
-        /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture.
+        /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture. Of a dielectric its indices for red, green and blue.
         base: [f32; 3],
         /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
         kind: u32,
-        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share.
+        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
         specular: [f32; 3],
         /// Index of refraction; exponent of Phong's specular lobe.
         ior: f32,
@@ -390,6 +390,9 @@ pub const NONE: u32 = u32::MAX;
 pub const LOST: u32 = u32::MAX - 1;
 /// The most targets that a light aims at.
 pub const MAX_AIM_TARGETS: u32 = 16;
+/// Steps of what the spectra's tables hold, evenly in ξ.
+pub const WAVELENGTH_STEPS: u32 = 512;
+
 /// Width of the textures that hold records, texels, as a power of two.
 pub const RECORDS_WIDTH_BITS: u32 = 13;
 /// Entries of the traversal stack: the deepest BVH that the kernels follow.
@@ -475,8 +478,10 @@ pub mod ledger {
     pub const CUT_OFF: u32 = 5;
     /// Flux taken (negative: given) by interpolated normals.
     pub const SHADING_NORMALS: u32 = 6;
+    /// Flux taken (negative: given) by the colours of single wavelengths.
+    pub const DISPERSION: u32 = 7;
     /// Accounts in a ledger.
-    pub const ACCOUNTS: u32 = 7;
+    pub const ACCOUNTS: u32 = 8;
 }
 
 /// Constants that both sides know: name in WGSL, value.
@@ -485,6 +490,7 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("LOST", LOST),
     ("MAX_AIM_TARGETS", MAX_AIM_TARGETS),
     ("STACK_SIZE", STACK_SIZE),
+    ("WAVELENGTH_STEPS", WAVELENGTH_STEPS),
     ("RECORDS_WIDTH_BITS", RECORDS_WIDTH_BITS),
     ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
     ("MATERIAL_PHONG", material_kind::PHONG),
@@ -517,5 +523,6 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("LEDGER_ESCAPED", ledger::ESCAPED),
     ("LEDGER_CUT_OFF", ledger::CUT_OFF),
     ("LEDGER_SHADING_NORMALS", ledger::SHADING_NORMALS),
+    ("LEDGER_DISPERSION", ledger::DISPERSION),
     ("LEDGER_ACCOUNTS", ledger::ACCOUNTS),
 ];

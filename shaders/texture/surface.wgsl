@@ -1,6 +1,6 @@
 // What pictures make of a surface at a point; docs/materials.md, "Textures".
 
-import package::geometry::surface::{interpolated_normal, SurfacePoint};
+import package::geometry::surface::SurfacePoint;
 import package::geometry::traverse::Hit;
 import package::layout::features::has_gloss;
 import package::layout::records::{load_material_textures, load_surface_texture, load_texture_coordinates};
@@ -25,8 +25,7 @@ const SLOTS: u32 = 5u;
 /// A textured surface at a point.
 struct TexturedSurface {
     material: Material,
-    /// Unit shading normal, on the side of the ray.
-    n_s: vec3<f32>,
+    point: SurfacePoint,
 }
 
 /// The shading normal that a normal map's value `c` makes, on the front; `n` where the texture has no direction there.
@@ -68,12 +67,12 @@ fn derive(source: Material) -> Material {
 }
 
 /// The surface at a hit, seen along `direction`, from its material and point before pictures.
-fn textured_surface(source: Material, point: SurfacePoint, hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
+fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
     let textures = load_material_textures(triangle.material);
     let coordinates = load_texture_coordinates(hit.triangle);
     let uv = interpolate_uv(coordinates, hit.barycentric);
     var material = source;
-    var n_s = point.n_s;
+    var point = untextured;
     let slots = array<u32, SLOTS>(textures.color, textures.roughness, textures.metallic, textures.emission, textures.normal);
     // A loop rather than five calls, for calls are inlined.
     for (var slot = 0u; slot < SLOTS; slot++) {
@@ -91,12 +90,11 @@ fn textured_surface(source: Material, point: SurfacePoint, hit: Hit, triangle: T
         material.extinction *= select(1.0, number, slot == SLOT_METALLIC);
         material.emission *= select(vec3<f32>(1.0), value.xyz, slot == SLOT_EMISSION);
         if slot == SLOT_NORMAL {
-            let smooth_normal = interpolated_normal(hit, triangle, point);
-            let n = select(-smooth_normal, smooth_normal, point.front);
+            let n = select(-point.n_smooth, point.n_smooth, point.front);
             let mapped = mapped_normal(texture, textures.normal_strength, value.xyz, coordinates, triangle, n);
-            let turned = select(-mapped, mapped, point.front);
-            n_s = select(n_s, turned, dot(direction, turned) < 0.0);
+            point.n_smooth = select(-mapped, mapped, point.front);
+            point.n_s = select(point.n_s, point.n_smooth, dot(direction, point.n_smooth) < 0.0);
         }
     }
-    return TexturedSurface(derive(material), n_s);
+    return TexturedSurface(derive(material), point);
 }

@@ -2,8 +2,8 @@
 //! partition of light: pixel by pixel, within both methods' noise.
 
 use diacaustic_reference::{camera::radiance, geometry::World};
-use diacaustic_scene::{LightKind, RadianceMap, Scene};
-use diacaustic_tests::{render, scene};
+use diacaustic_scene::{LightKind, RadianceMap, Scene, Texture};
+use diacaustic_tests::{normal_pattern, pattern, render, scene};
 use glam::{DVec3, Vec3};
 
 /// Samples of the brute-force estimate of a pixel.
@@ -172,4 +172,57 @@ fn camera_under_water() {
     );
     scene.camera.position = Vec3::new(0.3, 0.8, 1.5);
     assert_equals_path_tracing(&scene);
+}
+
+#[test]
+fn pictures_of_every_kind() {
+    let mut scene = over_a_floor(
+        "max_bounces = 2",
+        "{ type = \"coated\", albedo = 1, roughness = 1 }",
+        "background = 0.3
+         materials.rippled = { type = \"dielectric\", ior = 1.5 }
+         materials.worn = { type = \"metallic_roughness\", base_color = [0.9, 0.7, 0.3], metallic = 1, roughness = 1 }
+         materials.screen = { type = \"diffuse\", albedo = 0.5 }
+         materials.sign = { type = \"diffuse\", albedo = 0.2, emission = 12 }
+         lights = [
+             { type = \"disk\", center = [0.3, 2, 0.4], normal = [0, -1, -0.2], radius = 0.6, flux = 40 },
+         ]
+         objects = [
+             { box = { min = [-0.2, 0.1, -0.2], max = [0.2, 0.5, 0.2] }, material = \"rippled\", rotate = [0, 30, 0] },
+             { box = { min = [-0.9, 0, -0.3], max = [-0.4, 0.5, 0.2] }, material = \"worn\", rotate = [0, 20, 0] },
+             { rectangle = { center = [0.6, 0.4, 0.3], edge_u = [0.6, 0, 0], edge_v = [0, 0.5, -0.3] }, material = \"screen\" },
+             { rectangle = { center = [-0.3, 0.5, 0.6], edge_u = [0, 0, 0.3], edge_v = [0, 0.3, 0] }, material = \"sign\" },",
+    );
+    let tiles =
+        || pattern(4, 4, |x, y| [0.3 + 0.2 * x as f32, 0.3 + 0.2 * y as f32, 0.6, 0.4 + 0.2 * ((x + y) % 4) as f32]);
+    let waves = || normal_pattern(6, 6, |x, y| [0.1 * (x as f32 - 2.5), 0.3 * ((y % 3) as f32 - 1.0)]);
+    let alpha = || Some(Texture { channel: 3, ..tiles() });
+    for material in &mut scene.materials {
+        let textures = &mut material.textures;
+        match material.name.as_str() {
+            "floor" => (textures.color, textures.roughness, textures.normal) = (Some(tiles()), alpha(), waves()),
+            "rippled" => (textures.color, textures.normal) = (Some(tiles()), waves()),
+            "worn" => (textures.roughness, textures.metallic) = (alpha(), Some(Texture { channel: 1, ..tiles() })),
+            "screen" => textures.opacity = alpha(),
+            _ => (textures.emission, textures.opacity) = (Some(tiles()), alpha()),
+        }
+    }
+    assert_equals_path_tracing(&scene);
+}
+
+#[test]
+fn glass_that_disperses() {
+    assert_equals_path_tracing(&over_a_floor(
+        "max_bounces = 1",
+        "{ type = \"diffuse\", albedo = [0.8, 0.7, 0.6] }",
+        "background = [0.2, 0.3, 0.4]
+         materials.glass = { type = \"dielectric\", ior = 1.7, abbe = 12 }
+         materials.frosted = { type = \"dielectric\", ior = 1.5, abbe = 20, roughness = 0.3, tint = [1, 0.7, 0.5] }
+         lights = [
+             { type = \"sphere\", center = [1.2, 2.2, 0.4], radius = 0.4, flux = [40, 30, 20] },
+         ]
+         objects = [
+             { box = { min = [-0.25, 0.2, -0.25], max = [0.25, 0.6, 0.25] }, material = \"glass\", rotate = [0, 30, 20] },
+             { box = { min = [-0.9, 0.1, -0.3], max = [-0.5, 0.4, 0.2] }, material = \"frosted\", rotate = [0, 20, 0] },",
+    ));
 }

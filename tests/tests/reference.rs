@@ -1,12 +1,15 @@
 //! The photon kernel against the double-precision reference: the same photons must fill the same texels.
 
-use diacaustic::{Emission, Guide, GuideTable, glam::DVec3};
+use diacaustic::{
+    Emission, Guide, GuideTable,
+    glam::{DVec3, Vec3},
+};
 use diacaustic_reference::{
     geometry::{Sphere, World},
     photons::{self, AimDisc, Emission as ReferenceEmission, MapLayout, PhotonJob, trace},
 };
-use diacaustic_scene::Scene;
-use diacaustic_tests::{emit, scene};
+use diacaustic_scene::{MaterialKind, Mesh, Scene, Texture};
+use diacaustic_tests::{emit, normal_pattern, pattern, scene};
 
 const PHOTONS: u32 = 1 << 16;
 
@@ -29,9 +32,9 @@ struct Both {
     /// Texel sums of the floor's map, W times the photons.
     gpu: Vec<DVec3>,
     reference: Vec<DVec3>,
-    /// Emitted, deposited, direct, absorbed, escaped, shading normals.
-    gpu_ledger: [DVec3; 6],
-    reference_ledger: [DVec3; 6],
+    /// Emitted, deposited, direct, absorbed, escaped, shading normals, dispersion.
+    gpu_ledger: [DVec3; 7],
+    reference_ledger: [DVec3; 7],
 }
 
 fn both(scene: &Scene) -> Both {
@@ -92,9 +95,10 @@ fn both(scene: &Scene) -> Both {
             ledger.absorbed,
             ledger.escaped,
             ledger.shading_normals,
+            ledger.dispersion,
         ]
         .map(watts),
-        reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals],
+        reference_ledger: [l.emitted, l.deposited, l.direct, l.absorbed, l.escaped, l.shading_normals, l.dispersion],
     }
 }
 
@@ -240,4 +244,58 @@ fn nested_media_and_a_pane() {
     let more = "{ box = { min = [-0.25, 0.1, -0.25], max = [0.3, 0.45, 0.25] }, material = \"water\" },
          { rectangle = { center = [0.2, 1.2, 0], edge_u = [1, 0, 0], edge_v = [0, 0.2, -1] }, material = \"pane\" }";
     assert_alike(&of("{ type = \"dielectric\", ior = 1.5, priority = 1 }", PLASTER, more), 5e-3);
+}
+
+#[test]
+fn pictures_on_glass_metal_and_floor() {
+    let tiles =
+        || pattern(4, 4, |x, y| [0.5 + 0.1 * x as f32, 0.6 + 0.1 * y as f32, 0.9, 0.4 + 0.1 * ((x + y) % 4) as f32]);
+    let waves = || normal_pattern(8, 8, |x, y| [0.05 * (x as f32 - 3.5), 0.1 * ((y % 3) as f32 - 1.0)]);
+    let alpha = || Some(Texture { channel: 3, ..tiles() });
+    for (glass, floor) in [
+        ("{ type = \"dielectric\", ior = 1.5 }", PLASTER),
+        ("{ type = \"dielectric\", ior = 1.5, roughness = 0.5 }", PLASTER),
+        ("{ type = \"conductor\", metal = \"gold\", roughness = 0.5 }", "{ type = \"coated\", albedo = 0.9 }"),
+    ] {
+        let mut scene = of(glass, floor, "");
+        scene.objects[0].mesh = Mesh::sphere(Vec3::new(0.0, 0.3, 0.0), 0.3, 6).into();
+        for material in
+            scene.materials.iter_mut().filter(|material| ["glass", "floor"].contains(&material.name.as_str()))
+        {
+            material.textures.normal = waves();
+            match material.kind {
+                MaterialKind::Dielectric { roughness, .. } => {
+                    material.textures.color = Some(tiles());
+                    material.textures.roughness = alpha().filter(|_| roughness > 0.0);
+                }
+                MaterialKind::Conductor { .. } => material.textures.roughness = alpha(),
+                _ => material.textures.color = Some(tiles()),
+            }
+        }
+        assert_alike(&scene, 5e-3);
+    }
+}
+
+#[test]
+fn a_mask_passes_light_where_it_has_holes() {
+    let more =
+        "{ rectangle = { center = [0.2, 1.2, 0], edge_u = [1, 0, 0], edge_v = [0, 0.2, -1] }, material = \"pane\" }";
+    let mut scene = of("{ type = \"dielectric\", ior = 1.5 }", PLASTER, more);
+    let pane = scene.materials.iter_mut().find(|material| material.name == "pane").expect("the pane's material");
+    pane.textures.opacity = Some(pattern(8, 8, |x, y| [((x + y) % 2) as f32; 4]));
+    pane.opacity_cutoff = Some(0.5);
+    assert_alike(&scene, 5e-3);
+}
+
+#[test]
+fn dispersing_glass() {
+    for glass in [
+        "{ type = \"dielectric\", ior = 1.6, abbe = 25, tint = [1, 0.8, 0.6], absorption = [0.1, 0.5, 1] }",
+        "{ type = \"dielectric\", substance = \"sf11\", roughness = 0.1 }",
+    ] {
+        assert_alike(&of(glass, PLASTER, ""), 1e-2);
+    }
+    let mut line = of("{ type = \"dielectric\", substance = \"diamond\", tint = [1, 0.8, 0.6] }", PLASTER, "");
+    line.settings.wavelength = Some(486.13);
+    assert_alike(&line, 5e-3);
 }

@@ -1,26 +1,21 @@
 //! Pictures on surfaces against known answers.
 
-use std::sync::Arc;
-
 use diacaustic::Film;
-use diacaustic_scene::{Material, MaterialKind, NormalMap, Scene, Texture, TextureFilter, TextureImage, Wrap};
-use diacaustic_tests::{emit, render, scene};
+use diacaustic_scene::{Material, MaterialKind, NormalMap, Scene, Texture, TextureFilter, Wrap};
+use diacaustic_tests::{emit, normal_pattern, pattern, render, scene};
 use glam::{Affine2, DVec3, Vec2, Vec3};
-use half::f16;
 
 /// A picture of red numbers, with green twice and blue three times as great, and an alpha of one half.
-fn picture(width: u32, reds: &[f32]) -> Arc<TextureImage> {
-    let texel = |red: &f32| [*red, 2.0 * red, 3.0 * red, 0.5].map(f16::from_f32);
-    let height = reds.len() as u32 / width;
-    Arc::new(TextureImage::new(width, height, reds.iter().map(texel).collect()).unwrap())
+fn picture(width: u32, reds: &[f32]) -> Texture {
+    pattern(width, reds.len() as u32 / width, |column, row| {
+        let red = reds[(row * width + column) as usize];
+        [red, 2.0 * red, 3.0 * red, 0.5]
+    })
 }
 
 /// A normal map that tilts the normal by the same slope everywhere, along the picture's s.
 fn tilt(slope: f32) -> Option<NormalMap> {
-    let length = (slope * slope + 1.0).sqrt();
-    let texel = [0.5 + 0.5 * slope / length, 0.5, 0.5 + 0.5 / length, 1.0].map(f16::from_f32);
-    let texture = Texture::new(Arc::new(TextureImage::new(1, 1, vec![texel]).unwrap()));
-    Some(NormalMap { texture, strength: 1.0 })
+    normal_pattern(1, 1, |_, _| [slope, 0.0])
 }
 
 /// A floor of 2 m × 1 m, of which each pixel sees a square of 1/16 m, under light from straight above that gives radiance 1 at
@@ -54,7 +49,7 @@ fn quarter(film: &Film, index: usize) -> f64 {
 #[test]
 fn texels_lie_where_they_should() {
     let mut scene = floor();
-    let texture = Texture { filter: TextureFilter::Nearest, ..Texture::new(picture(2, &[0.1, 0.2, 0.3, 0.05])) };
+    let texture = Texture { filter: TextureFilter::Nearest, ..picture(2, &[0.1, 0.2, 0.3, 0.05]) };
     scene.materials[0].textures.color = Some(texture);
     let film = render(&scene);
     // Up in the picture is −z, which is edge_v: the upper row of texels is far from the viewer.
@@ -67,8 +62,7 @@ fn texels_lie_where_they_should() {
 #[test]
 fn between_texels_the_picture_is_bilinear() {
     let mut scene = floor();
-    scene.materials[0].textures.color =
-        Some(Texture { wrap: [Wrap::Clamp; 2], ..Texture::new(picture(2, &[0.0, 0.25])) });
+    scene.materials[0].textures.color = Some(Texture { wrap: [Wrap::Clamp; 2], ..picture(2, &[0.0, 0.25]) });
     let film = render(&scene);
     for column in 0..32 {
         let s = (column as f64 + 0.5) / 32.0;
@@ -80,7 +74,7 @@ fn between_texels_the_picture_is_bilinear() {
 
 #[test]
 fn pictures_wrap_turn_and_move() {
-    let image = picture(2, &[0.1, 0.3]);
+    let two = picture(2, &[0.1, 0.3]);
     let cases = [
         (Wrap::Repeat, Affine2::from_scale(Vec2::new(2.0, 1.0)), [0.1, 0.3, 0.1, 0.3]),
         (Wrap::Mirror, Affine2::from_scale(Vec2::new(2.0, 1.0)), [0.1, 0.3, 0.3, 0.1]),
@@ -94,7 +88,7 @@ fn pictures_wrap_turn_and_move() {
     for (wrap, picture_from_uv, expected) in cases {
         let mut scene = floor();
         let filter = TextureFilter::Nearest;
-        let texture = Texture { wrap: [wrap; 2], filter, picture_from_uv, ..Texture::new(image.clone()) };
+        let texture = Texture { wrap: [wrap; 2], filter, picture_from_uv, ..two.clone() };
         scene.materials[0].textures.color = Some(texture);
         let film = render(&scene);
         for (index, red) in expected.into_iter().enumerate() {
@@ -128,16 +122,14 @@ fn coats_and_metals_follow_their_pictures() {
                  ]"
             ));
             if textured {
-                let half = [0.4, 0.5, 0.5, 1.0].map(f16::from_f32);
-                let gray = [0.4, 0.4, 0.4, 1.0].map(f16::from_f32);
-                let image = |texel| Texture::new(Arc::new(TextureImage::new(1, 1, vec![texel]).unwrap()));
+                let half = || pattern(1, 1, |_, _| [0.4, 0.5, 0.5, 1.0]);
                 let Material { kind, textures, .. } = &mut scene.materials[0];
-                textures.color = Some(image(gray));
+                textures.color = Some(pattern(1, 1, |_, _| [0.4; 4]));
                 if !matches!(kind, MaterialKind::Mirror { .. }) {
-                    textures.roughness = Some(Texture { channel: 1, ..image(half) });
+                    textures.roughness = Some(Texture { channel: 1, ..half() });
                 }
                 if matches!(kind, MaterialKind::MetallicRoughness { .. }) {
-                    textures.metallic = Some(Texture { channel: 2, ..image(half) });
+                    textures.metallic = Some(Texture { channel: 2, ..half() });
                 }
             }
             mean(&render(&scene), 0..16, 0..16)
@@ -214,7 +206,7 @@ fn light_passes_what_is_not_opaque() {
         assert!((found - f64::from(1.0 - opacity)).abs() < 5e-3, "opacity {opacity}: {found}");
     }
     let quarters = picture(2, &[1.0, 0.5]);
-    let texture = Texture { filter: TextureFilter::Nearest, ..Texture::new(quarters) };
+    let texture = Texture { filter: TextureFilter::Nearest, ..quarters };
     for (cutoff, left, right) in [(None, 0.0, 0.5), (Some(0.75), 0.0, 1.0), (Some(0.25), 0.0, 0.0)] {
         let film = behind_a_sheet(|sheet| {
             sheet.textures.opacity = Some(texture.clone());
@@ -239,8 +231,8 @@ fn a_surface_with_a_picture_shines_as_its_mean() {
          ]",
     );
     let panel = scene.objects[0].materials[0];
-    scene.materials[panel].textures.emission = Some(Texture::new(picture(2, &[0.0, 0.3])));
-    scene.materials[panel].textures.opacity = Some(Texture { channel: 3, ..Texture::new(picture(1, &[0.0])) });
+    scene.materials[panel].textures.emission = Some(picture(2, &[0.0, 0.3]));
+    scene.materials[panel].textures.opacity = Some(Texture { channel: 3, ..picture(1, &[0.0]) });
     let found = mean(&render(&scene), 0..8, 0..8);
     let irradiance = 0.5 * 0.15 * 1000.0 * 0.04 / 100.0;
     let expected = irradiance / std::f64::consts::PI * DVec3::new(1.0, 2.0, 3.0);

@@ -130,6 +130,7 @@ fn light_ledger(light: &LightReport, ledger: &Ledger, photons: u64) -> output::L
         escaped: watts(ledger.escaped),
         cut_off: watts(ledger.cut_off),
         shading_normals: watts(ledger.shading_normals),
+        dispersion: watts(ledger.dispersion),
         residue: ledger.residue(),
     }
 }

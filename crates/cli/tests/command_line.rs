@@ -194,7 +194,7 @@ fn statistics_hold_the_counts_and_a_closed_ledger() {
     let lamp = &stats["lights"][0];
     assert_eq!((&lamp["name"], &lamp["residue"]), (&"lamp".into(), &serde_json::json!([0, 0, 0])));
     let watts = |account: &str| lamp[account][1].as_f64().unwrap();
-    let spent = ["deposited", "direct", "absorbed", "escaped", "cut_off", "shading_normals"].map(watts);
+    let spent = ["deposited", "direct", "absorbed", "escaped", "cut_off", "shading_normals", "dispersion"].map(watts);
     assert!(watts("deposited") > 0.0 && watts("emitted") < 35.0, "{lamp}");
     assert!((spent.iter().sum::<f64>() / watts("emitted") - 1.0).abs() < 1e-9, "{lamp}");
     for stage in ["load", "device", "kernels", "bvh", "maps", "upload", "photons", "samples", "write"] {

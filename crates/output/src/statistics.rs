@@ -157,6 +157,8 @@ pub struct LightLedger {
     pub cut_off: [f64; 3],
     /// What interpolated normals took (negative: gave).
     pub shading_normals: [f64; 3],
+    /// Taken (negative: given) by the colours of single wavelengths; its mean is 0.
+    pub dispersion: [f64; 3],
     /// Emitted minus all other accounts, units of the fixed-point sums: 0.
     pub residue: [i64; 3],
 }

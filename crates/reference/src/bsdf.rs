@@ -13,6 +13,7 @@ use glam::{DVec3, Vec3};
 use crate::fresnel;
 use crate::geometry::{Facing, Hit, World};
 use crate::media::Media;
+use crate::spectrum::Spectrum;
 
 pub use self::base::Base;
 pub(crate) use self::prepared::{Factors, PreparedMaterial};
@@ -23,6 +24,7 @@ use self::microfacet::Microfacets;
 
 /// What a ray meets at a triangle.
 #[derive(Clone, Copy, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one lives at a time")]
 pub enum Crossing {
     /// A boundary that does not exist: the ray goes straight on with this list.
     Nothing(Media),
@@ -31,8 +33,15 @@ pub enum Crossing {
 }
 
 impl Crossing {
+    /// Whether light without a wavelength takes one at what a ray within `media` meets, before it is asked [what that
+    /// is](Self::of).
+    pub fn disperses(world: &World, hit: &Hit, facing: &Facing, media: Media) -> bool {
+        let beyond = world.dielectrics().beyond(media, world.material_index(hit.triangle), facing.front);
+        world.dielectrics().disperse_between(&media, &beyond)
+    }
+
     /// What a ray within `media` meets.
-    pub fn of(world: &World, hit: &Hit, facing: &Facing, media: Media) -> Self {
+    pub fn of(world: &World, hit: &Hit, facing: &Facing, media: Media, spectrum: Spectrum) -> Self {
         let material = world.material_index(hit.triangle);
         let beyond = world.dielectrics().beyond(media, material, facing.front);
         let prepared = world.prepared(hit.triangle);
@@ -40,15 +49,17 @@ impl Crossing {
         if is_dielectric && beyond.filling() == media.filling() {
             return Self::Nothing(beyond);
         }
-        let ior = [&media, &beyond].map(|media| world.dielectrics().ior(media));
+        let ior = [&media, &beyond].map(|media| world.dielectrics().ior(media, &spectrum));
         let ambient = world.scene().ambient.as_dvec3();
-        Self::Surface(Surface::at_point(prepared, &world.factors(hit), ambient, ior), beyond)
+        Self::Surface(Surface::at_point(prepared, &world.factors(hit), ambient, ior, spectrum), beyond)
     }
 }
 
 /// A surface's lobes, between the media on its two sides.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface {
+    /// The light that it is for.
+    spectrum: Spectrum,
     specular: Specular,
     microfacets: Option<Microfacets>,
     base: Option<Base>,
@@ -56,7 +67,8 @@ pub struct Surface {
 }
 
 /// The specular lobe. `eta` is the index of refraction on the side of wo over that of the other; n + ik are relative to
-/// the medium.
+/// the medium. Reflectances stay red, green and blue for light of one wavelength, as choices take the mean of these; a
+/// tint is that for the light.
 #[derive(Clone, Copy, Debug)]
 enum Specular {
     None,
@@ -69,7 +81,36 @@ enum Specular {
 }
 
 impl Specular {
-    /// Share of the light that is reflected at cos θ to the microfacet's normal.
+    /// The lobe of a material at a point between two indices of refraction, and the material's roughness.
+    fn of(
+        prepared: &PreparedMaterial,
+        factors: &Factors,
+        [ior, ior_beyond]: [f64; 2],
+        spectrum: &Spectrum,
+    ) -> (Self, f32) {
+        let colored = |color: Vec3| color.as_dvec3() * factors.color;
+        let tinted = |tint: Vec3| spectrum.color(colored(tint));
+        match prepared.material.kind {
+            MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => (Self::None, 0.0),
+            MaterialKind::Mirror { reflectance } => (Self::Mirror { reflectance: colored(reflectance) }, 0.0),
+            MaterialKind::Conductor { eta, k, roughness } => {
+                (Self::Conductor { n: eta.as_dvec3() / ior, k: k.as_dvec3() / ior }, roughness)
+            }
+            MaterialKind::Dielectric { tint, roughness, .. } => {
+                (Self::Dielectric { eta: ior / ior_beyond, tint: tinted(tint) }, roughness)
+            }
+            MaterialKind::ThinWalled { ior: own, tint } => {
+                (Self::ThinWalled { eta: ior / f64::from(own), tint: tinted(tint) }, 0.0)
+            }
+            MaterialKind::Coated { ior: own, roughness, .. } => (Self::Coat { eta: ior / f64::from(own) }, roughness),
+            MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+                let f0 = base::metallic_f0(colored(base_color), f64::from(metallic) * factors.metallic);
+                (Self::Schlick { f0 }, roughness)
+            }
+        }
+    }
+
+    /// Share of red, green and blue light that is reflected at cos θ to the microfacet's normal.
     fn fresnel(&self, cos: f64) -> DVec3 {
         match *self {
             Self::None => DVec3::ZERO,
@@ -90,39 +131,27 @@ impl Specular {
 impl Surface {
     /// The surface of a material, but for its pictures, between two indices of refraction: on the side of wo and beyond.
     /// Materials other than dielectrics have the same on both sides. `ambient` is the scene's radiance of that name,
-    /// W/(m² sr).
+    /// W/(m² sr). It is for light of all wavelengths.
     pub fn new(material: &Material, ambient: DVec3, ior: f64, ior_beyond: f64) -> Self {
-        Self::at_point(&PreparedMaterial::new(material), &Factors::ONE, ambient, [ior, ior_beyond])
+        let prepared = PreparedMaterial::new(material);
+        Self::at_point(&prepared, &Factors::ONE, ambient, [ior, ior_beyond], Spectrum::Whole)
     }
 
     /// The surface at a point where the pictures have these factors.
-    fn at_point(prepared: &PreparedMaterial, factors: &Factors, ambient: DVec3, [ior, ior_beyond]: [f64; 2]) -> Self {
-        let colored = |color: Vec3| color.as_dvec3() * factors.color;
-        let (specular, roughness) = match prepared.material.kind {
-            MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } => (Specular::None, 0.0),
-            MaterialKind::Mirror { reflectance } => (Specular::Mirror { reflectance: colored(reflectance) }, 0.0),
-            MaterialKind::Conductor { eta, k, roughness } => {
-                (Specular::Conductor { n: eta.as_dvec3() / ior, k: k.as_dvec3() / ior }, roughness)
-            }
-            MaterialKind::Dielectric { tint, roughness, .. } => {
-                (Specular::Dielectric { eta: ior / ior_beyond, tint: colored(tint) }, roughness)
-            }
-            MaterialKind::ThinWalled { ior: own, tint } => {
-                (Specular::ThinWalled { eta: ior / f64::from(own), tint: colored(tint) }, 0.0)
-            }
-            MaterialKind::Coated { ior: own, roughness, .. } => {
-                (Specular::Coat { eta: ior / f64::from(own) }, roughness)
-            }
-            MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
-                let f0 = base::metallic_f0(colored(base_color), f64::from(metallic) * factors.metallic);
-                (Specular::Schlick { f0 }, roughness)
-            }
-        };
+    fn at_point(
+        prepared: &PreparedMaterial,
+        factors: &Factors,
+        ambient: DVec3,
+        [ior, ior_beyond]: [f64; 2],
+        spectrum: Spectrum,
+    ) -> Self {
+        let (specular, roughness) = Specular::of(prepared, factors, [ior, ior_beyond], &spectrum);
         let roughness = f64::from(roughness) * factors.roughness;
         Self {
+            spectrum,
             specular,
             microfacets: (roughness >= f64::from(SMOOTH)).then(|| Microfacets::of_roughness(roughness)),
-            base: Base::of(prepared, factors, ambient),
+            base: Base::of(prepared, factors, ambient, &spectrum),
             is_caster: prepared.is_caster,
         }
     }
@@ -149,6 +178,11 @@ impl Surface {
 
     /// T(w), the share of light along w that passes between the base and the open, at w·n_s.
     pub fn passed_to_base(&self, cos: f64) -> DVec3 {
-        1.0 - self.specular.fresnel(cos)
+        1.0 - self.reflectance(cos)
+    }
+
+    /// Share of the light that is reflected at cos θ to the microfacet's normal.
+    fn reflectance(&self, cos: f64) -> DVec3 {
+        self.spectrum.color(self.specular.fresnel(cos))
     }
 }

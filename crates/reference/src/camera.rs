@@ -10,6 +10,9 @@
 //!
 //! The camera and points may stand within dielectrics ([`Scene::media_at`](diacaustic_scene::Scene::media_at)).
 //!
+//! A path takes a wavelength at the first dispersive boundary (`docs/spectra.md`). In a dispersive medium around the
+//! camera, the index that divides its radiance is then that at this wavelength.
+//!
 //! On flat meshes photons and paths estimate the same light exactly. Interpolated normals are not reciprocal where they
 //! give way to the flat ones (silhouettes), and can catch light inside for good; both go away with finer meshes.
 
@@ -38,7 +41,7 @@ pub use crate::estimate::Estimate;
 pub fn radiance(world: &World, x: u32, y: u32, samples: u32, max_bounces: u32, seed: u64) -> Estimate {
     let view = lens::View::new(world.scene());
     let media = world.media_around(world.scene().camera.position);
-    let shown = world.dielectrics().ior(&media).powi(-2);
+    let shown = world.dielectrics().ior(&media, &world.spectrum()).powi(-2);
     let words = [seed, u64::from(x), u64::from(y)];
     let [estimate] = estimate::mean(samples, &words, |generator| {
         let ray = view.ray(x, y, generator);

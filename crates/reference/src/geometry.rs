@@ -15,6 +15,7 @@ use glam::{DVec3, Vec3};
 use crate::bsdf::PreparedMaterial;
 use crate::lights::{self, EmissiveSurfaces, Environment};
 use crate::media::{Dielectrics, Media};
+use crate::spectrum::Spectrum;
 
 pub use self::disk::Disk;
 pub use self::light_shape::LightShape;
@@ -101,6 +102,7 @@ pub struct World<'a> {
     epsilon: f64,
     bounds: Sphere,
     dielectrics: Dielectrics,
+    spectrum: Spectrum,
     materials: Vec<PreparedMaterial<'a>>,
     /// Whether rays may pass any of the materials.
     has_holes: bool,
@@ -122,6 +124,7 @@ impl<'a> World<'a> {
             light_media: scene.lights.iter().map(|l| position(l).map_or(Media::AIR, around)).collect(),
             epsilon: RELATIVE_EPSILON * bvh.extent(),
             bounds: bounding_sphere(&triangles, &light_shapes),
+            spectrum: Spectrum::of_render(scene.settings.wavelength),
             materials: scene.materials.iter().map(PreparedMaterial::new).collect(),
             has_holes: scene.materials.iter().any(Material::has_holes),
             environment: Environment::of(scene),
@@ -177,6 +180,16 @@ impl<'a> World<'a> {
     /// The scene's dielectrics.
     pub fn dielectrics(&self) -> &Dielectrics {
         &self.dielectrics
+    }
+
+    /// The spectrum with which all light starts.
+    pub fn spectrum(&self) -> Spectrum {
+        self.spectrum
+    }
+
+    /// Whether some light has one wavelength.
+    pub fn has_dispersion(&self) -> bool {
+        self.scene.has_dispersion()
     }
 
     /// The list of the dielectrics that enclose a point.

@@ -7,7 +7,8 @@
 //! with the renderer by the physics or not at all. What surfaces and media do (`docs/materials.md`) is in [`bsdf`] and
 //! [`media`].
 //!
-//! Everything is in metres, watts and the world frame, one value a colour channel (linear Rec. 709).
+//! Everything is in metres, watts and the world frame, one value a colour channel (linear Rec. 709). Light that has met a
+//! dispersive medium has one wavelength (`docs/spectra.md`), whose colours [`spectrum`] has.
 
 pub mod bsdf;
 pub mod camera;
@@ -22,5 +23,6 @@ pub mod photons;
 pub mod random;
 mod roulette;
 pub mod snell;
+pub mod spectrum;
 pub mod texture;
 pub mod warp;

@@ -1,7 +1,9 @@
 //! Which dielectric fills the place that a ray is in.
 
-use diacaustic_scene::{MaterialKind, Scene};
+use diacaustic_scene::{Dispersion, MaterialKind, Scene};
 use glam::{DVec3, Vec3};
+
+use crate::spectrum::{self, Spectrum};
 
 /// The most dielectrics that a ray keeps in mind.
 const CAPACITY: usize = 4;
@@ -46,9 +48,21 @@ impl Media {
 
 #[derive(Clone, Copy, Debug)]
 struct Dielectric {
-    ior: f64,
+    /// Index of refraction as stated.
+    ior: f32,
+    dispersion: Dispersion,
     /// 1/m.
     absorption: DVec3,
+}
+
+impl Dielectric {
+    /// As stated for light of all wavelengths.
+    fn ior(&self, spectrum: &Spectrum) -> f64 {
+        match spectrum {
+            Spectrum::Whole => f64::from(self.ior),
+            Spectrum::Line(wavelength) => self.dispersion.index(self.ior, wavelength.nm),
+        }
+    }
 }
 
 /// The dielectrics of a scene.
@@ -68,8 +82,8 @@ impl Dielectrics {
             .iter()
             .zip(&ranks)
             .filter_map(|(material, rank)| match material.kind {
-                MaterialKind::Dielectric { ior, absorption, .. } => {
-                    Some((*rank, Dielectric { ior: f64::from(ior), absorption: absorption.as_dvec3() }))
+                MaterialKind::Dielectric { ior, dispersion, absorption, .. } => {
+                    Some((*rank, Dielectric { ior, dispersion, absorption: absorption.as_dvec3() }))
                 }
                 _ => None,
             })
@@ -94,20 +108,37 @@ impl Dielectrics {
         }
     }
 
+    /// Whether a boundary lies between the two lists and the index on one of its sides changes with the wavelength.
+    pub fn disperse_between(&self, media: &Media, beyond: &Media) -> bool {
+        media.filling() != beyond.filling()
+            && [media, beyond].into_iter().filter_map(|m| self.filling(m)).any(|d| !d.dispersion.is_none())
+    }
+
     /// Index of refraction of what fills the place; 1 in air.
-    pub fn ior(&self, media: &Media) -> f64 {
-        media.filling().map_or(1.0, |rank| self.by_rank[rank as usize].ior)
+    pub fn ior(&self, media: &Media, spectrum: &Spectrum) -> f64 {
+        self.filling(media).map_or(1.0, |dielectric| dielectric.ior(spectrum))
+    }
+
+    /// Indices of refraction of what fills the place for red, green and blue light as a whole: means over the wavelengths' colours.
+    pub fn colored_ior(&self, media: &Media) -> DVec3 {
+        let index =
+            |dielectric: &Dielectric| spectrum::mean_of_colors(|nm| dielectric.dispersion.index(dielectric.ior, nm));
+        self.filling(media).map_or(DVec3::ONE, index)
     }
 
     /// σ of what fills the place, 1/m.
-    pub fn absorption(&self, media: &Media) -> DVec3 {
-        media.filling().map_or(DVec3::ZERO, |rank| self.by_rank[rank as usize].absorption)
+    pub fn absorption(&self, media: &Media, spectrum: &Spectrum) -> DVec3 {
+        self.filling(media).map_or(DVec3::ZERO, |dielectric| spectrum.color(dielectric.absorption))
     }
 
     /// Beer and Lambert's law over a distance in metres. A flight without end loses nothing: only the hole of an open
     /// mesh lets one happen.
-    pub fn transmittance(&self, media: &Media, distance: f64) -> DVec3 {
-        if distance.is_finite() { (-self.absorption(media) * distance).exp() } else { DVec3::ONE }
+    pub fn transmittance(&self, media: &Media, distance: f64, spectrum: &Spectrum) -> DVec3 {
+        if distance.is_finite() { (-self.absorption(media, spectrum) * distance).exp() } else { DVec3::ONE }
+    }
+
+    fn filling(&self, media: &Media) -> Option<&Dielectric> {
+        media.filling().map(|rank| &self.by_rank[rank as usize])
     }
 }
 

@@ -100,12 +100,25 @@ pub struct PhotonNumbers {
     key: u32,
     photon: u32,
     casters: u32,
+    /// Whether the first choice takes the fifth emission number.
+    fifth_is_choice: bool,
 }
 
 impl PhotonNumbers {
     /// The numbers of a photon of the light of index `light`.
     pub fn new(seed: u32, light: u32, photon: u32) -> Self {
-        Self { key: combine(combine(seed, 1), light), photon, casters: 0 }
+        Self { key: combine(combine(seed, 1), light), photon, casters: 0, fifth_is_choice: true }
+    }
+
+    /// The numbers in a scene with dispersion, whose fifth chooses the wavelength.
+    #[must_use]
+    pub fn with_wavelength(self) -> Self {
+        Self { fifth_is_choice: false, ..self }
+    }
+
+    /// ξ, the number that draws the wavelength.
+    pub fn wavelength(&self) -> f64 {
+        self.emission(4)
     }
 
     /// The emission number u_k, k = 0 to 4.
@@ -121,7 +134,7 @@ impl PhotonNumbers {
     }
 
     fn choice(&self, caster: u32) -> f64 {
-        if caster == 0 {
+        if caster == 0 && self.fifth_is_choice {
             return self.emission(4);
         }
         let shuffled = owen(self.photon, combine(self.key, 16 + 2 * caster)).reverse_bits();
@@ -259,6 +272,21 @@ mod tests {
     fn choice_zero_is_the_fifth_emission_number() {
         let numbers = PhotonNumbers::new(11, 3, 12345);
         assert_eq!(numbers.clone().next_caster().choice, numbers.emission(4));
+    }
+
+    #[test]
+    fn wavelength_takes_the_fifth_number_from_choice_zero() {
+        let k = 10;
+        let of = |photon| PhotonNumbers::new(7, 2, photon).with_wavelength();
+        let numbers = (0..1 << k).map(|photon| (of(photon).next_caster().choice * 2f64.powi(32)) as u32);
+        assert!(is_net(numbers, k));
+        let pairs = (0..1 << 16).map(|photon| (of(photon).wavelength(), of(photon).next_caster().choice));
+        assert!(chi_squared_ratio(pairs) < 2.0);
+        // Later choices are what they are without dispersion.
+        let (mut with, mut without) = (of(99), PhotonNumbers::new(7, 2, 99));
+        assert_ne!(with.next_caster().choice, without.next_caster().choice);
+        assert_eq!(with.next_caster(), without.next_caster());
+        assert_eq!(with.wavelength(), without.emission(4));
     }
 
     #[test]

@@ -10,7 +10,7 @@ const FROM: u32 = 16;
 const LONGEST_PATH: u32 = 10_000;
 
 /// Whether a path goes on after its `surfaces`-th surface; what does carries the share of what does not. `kept` is what
-/// is left of the path's weight, 1 at its start.
+/// is left of the path's weight, 1 at its start. That of one wavelength may have a negative channel.
 pub(crate) fn survives(kept: &mut DVec3, surfaces: u32, generator: &mut Generator) -> bool {
     if *kept == DVec3::ZERO || surfaces >= LONGEST_PATH {
         return false;
@@ -18,7 +18,7 @@ pub(crate) fn survives(kept: &mut DVec3, surfaces: u32, generator: &mut Generato
     if surfaces < FROM {
         return true;
     }
-    let chance = kept.max_element().min(1.0);
+    let chance = kept.abs().max_element().min(1.0);
     if generator.unit() >= chance {
         return false;
     }

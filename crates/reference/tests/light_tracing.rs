@@ -1,53 +1,20 @@
 //! Light followed from its source against paths from the eye, and photons against both.
 
 mod shapes;
+mod under_a_ball;
 
-use diacaustic_reference::camera::{Estimate, irradiance_at};
+use diacaustic_reference::camera::Estimate;
 use diacaustic_reference::geometry::{Sphere, World};
-use diacaustic_reference::light_tracing::{Lighting, Region, irradiance_on};
+use diacaustic_reference::light_tracing::{Lighting, irradiance_on};
 use diacaustic_reference::photons::{Emission, MapLayout, PhotonJob, trace};
 use diacaustic_scene::{Light, LightKind, MaterialKind, Mesh, Scene};
 use glam::{DVec2, DVec3, Vec3};
 
 use shapes::{ball, block, diffuse, flat, floor, frosted, glass, light, named, scene};
-
-const BALL: DVec3 = DVec3::new(0.0, 0.6, 0.0);
-const RADIUS: f64 = 0.4;
-
-/// A floor of half width 0.3 m under a ball.
-fn under_a_ball(mesh: Mesh, kind: MaterialKind, light: Light) -> Scene {
-    scene(vec![(floor(0.3), diffuse(0.5), Vec3::ZERO), (mesh, kind, BALL.as_vec3())], vec![light])
-}
-
-fn fine_ball() -> Mesh {
-    ball(RADIUS as f32, 5)
-}
-
-fn around_the_ball() -> Sphere {
-    Sphere { center: BALL, radius: RADIUS }
-}
-
-fn floor_region(bins: usize) -> Region {
-    let (edge_u, edge_v) = (0.6 * DVec3::X, -0.6 * DVec3::Z);
-    Region { center: DVec3::ZERO, edge_u, edge_v, columns: bins, rows: bins }
-}
+use under_a_ball::{BALL, RADIUS, around_the_ball, fine_ball, floor_region, under_a_ball, via_casters_on_bin};
 
 fn point(flux: f32) -> Light {
     named(LightKind::Point { position: Vec3::new(0.3, 2.2, 0.2), flux: Vec3::splat(flux) })
-}
-
-/// The mean over a bin of what paths find, from a grid of points.
-fn via_casters_on_bin(world: &World, region: &Region, bin: usize, samples: u32) -> Estimate {
-    let grid = 8;
-    let share = |k: i32| (f64::from(k) + 0.5) / f64::from(grid) - 0.5;
-    let mut sum = Estimate { mean: DVec3::ZERO, variance: DVec3::ZERO };
-    for (i, j) in (0..grid).flat_map(|i| (0..grid).map(move |j| (i, j))) {
-        let across = share(i) * region.edge_u / region.columns as f64 + share(j) * region.edge_v / region.rows as f64;
-        let one = irradiance_at(world, region.bin_center(bin) + across, DVec3::Y, samples, 2).via_casters;
-        sum.mean += one.mean / f64::from(grid * grid);
-        sum.variance += one.variance / f64::from(grid * grid).powi(2);
-    }
-    sum
 }
 
 fn assert_agree(traced: &Estimate, found: &Estimate, systematic: f64, name: &str) {

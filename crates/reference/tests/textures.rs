@@ -200,6 +200,23 @@ fn light_by_way_of_casters_falls_on_the_mapped_normal() {
     }
 }
 
+#[test]
+fn photons_from_below_the_mapped_normal_bring_nothing_and_grazing_ones_at_most_four_times_their_flux() {
+    let (map, n) = leaning(Vec3::new(0.8, 0.0, 0.6), 1.0);
+    for (d, least) in [(Vec3::new(1.0, -0.5, 0.0), 0.0), (Vec3::new(-1.0, -0.1, 0.0), 4.0)] {
+        let parts = vec![(plate(0.0, 8.0), diffuse(0.5), Vec3::ZERO), (plate(0.2, 8.0), pane(), Vec3::ZERO)];
+        let mut scene = scene(parts, vec![parallel(d)]);
+        scene.materials[0].textures.normal = Some(map.clone());
+        let d = d.as_dvec3().normalize();
+        let whole = (d.dot(in_the_world(n)) / d.y).max(0.0);
+        assert!(whole >= 2.0 * least, "{whole}");
+        let above = Sphere { center: 0.2 * DVec3::Y, radius: 0.1 };
+        let ledger = ledger_of(&scene, &[above], 1 << 12);
+        let factor = ledger.deposited / (ledger.deposited + ledger.shading_normals);
+        assert!(factor.abs_diff_eq(DVec3::splat(least), 1e-12), "{factor}");
+    }
+}
+
 fn assert_agrees(estimate: &Estimate, expected: f64, systematic: f64, name: &str) {
     let Estimate { mean, variance } = estimate;
     let tolerance = 4.5 * variance.x.sqrt() + systematic * expected;
@@ -248,11 +265,13 @@ const AROUND_THE_BALL: Sphere = Sphere { center: DVec3::new(0.0, 0.6, 0.0), radi
 
 #[test]
 fn photons_paths_and_light_tracing_agree_on_shading_normals() {
-    // Tilted so little that nothing comes from below the shading normal.
-    let mut by_map = under_a_ball();
-    let (map, n) = leaning(Vec3::new(0.5, 0.1, 0.86), 1.0);
-    by_map.materials[0].textures.normal = Some(map);
-    assert_three_ways(&by_map, in_the_world(n), AROUND_THE_BALL, 4000, "normal map");
+    // The first sees all light from above; the second does not.
+    for lean in [Vec3::new(0.5, 0.1, 0.86), Vec3::new(0.85, 0.1, 0.5)] {
+        let mut by_map = under_a_ball();
+        let (map, n) = leaning(lean, 1.0);
+        by_map.materials[0].textures.normal = Some(map);
+        assert_three_ways(&by_map, in_the_world(n), AROUND_THE_BALL, 8000, &format!("normal map, {lean}"));
+    }
 
     let mut interpolated = under_a_ball();
     let n = Vec3::new(-0.2, 1.0, 0.3).normalize();

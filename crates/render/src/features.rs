@@ -26,6 +26,8 @@ pub(crate) struct Features {
     textures: bool,
     /// Surfaces that rays may pass as if they were not there.
     holes: bool,
+    /// Light of single wavelengths.
+    dispersion: bool,
     /// The kind of light that emits photons.
     photon_light_kind: u32,
     /// Whether a guide moves photons.
@@ -49,6 +51,7 @@ impl Features {
             environment: shines(&[light_kind::ENVIRONMENT]),
             textures: scene.materials.iter().any(|material| material.textures.any()),
             holes: scene.materials.iter().any(Material::has_holes),
+            dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
             guide: false,
             footprints: false,
@@ -58,9 +61,10 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
-        let Self { gloss, conductors, textures, holes, .. } = self;
-        let (guide, footprints) = (settings.guiding, settings.footprints);
-        Self { gloss, conductors, textures, holes, photon_light_kind: kind, guide, footprints, ..Self::default() }
+        let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
+        let RenderSettings { guiding: guide, footprints, .. } = *settings;
+        let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
+        Self { gloss, conductors, textures, holes, dispersion, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -79,6 +83,7 @@ impl Features {
             ("has_environment", f64::from(self.environment)),
             ("has_textures", f64::from(self.textures)),
             ("has_holes", f64::from(self.holes)),
+            ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),

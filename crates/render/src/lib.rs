@@ -42,6 +42,7 @@ mod ray_query;
 mod renderer;
 mod scene_buffers;
 mod self_test;
+mod spectra_records;
 mod statistics;
 mod texture_records;
 

@@ -5,7 +5,10 @@ use diacaustic_shaders as shaders;
 use diacaustic_shaders::material_kind as kinds;
 use glam::Vec3;
 
-use crate::lights::medium_key;
+use crate::{
+    lights::medium_key,
+    spectra_records::{colored_index, row_of},
+};
 
 /// Reflectance along the normal of the dielectric part of glTF's model.
 const DIELECTRIC_F0: f32 = 0.04;
@@ -21,7 +24,12 @@ pub(crate) fn material(scene: &Scene, index: usize) -> shaders::Material {
     let is_textured = source.textures.any();
     let textured = if is_textured { kinds::TEXTURED } else { 0 };
     let scattering = if is_textured { before_pictures(kind) } else { scattering(kind) };
+    let specular = match kind {
+        MaterialKind::Dielectric { .. } => [row_of(scene, index).map_or(-1.0, |row| row as f32), 0.0, 0.0],
+        _ => scattering.specular,
+    };
     shaders::Material {
+        specular,
         kind: scattering.kind | caster | receiver | textured,
         medium: medium_key(scene, index),
         emission: source.emission.into(),
@@ -52,8 +60,9 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
             gloss: width(roughness),
             ..blank
         },
-        MaterialKind::Dielectric { ior, tint, absorption, roughness, .. } => shaders::Material {
+        MaterialKind::Dielectric { ior, dispersion, tint, absorption, roughness, .. } => shaders::Material {
             kind: kinds::DIELECTRIC,
+            base: colored_index(ior, dispersion).into(),
             ior,
             tint: tint.into(),
             extinction: absorption.into(),

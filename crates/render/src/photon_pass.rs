@@ -99,6 +99,7 @@ pub(crate) struct Photons {
     guided: bool,
     /// Units of the fixed-point sums in a watt: a power of two, so that scaling is exact.
     pub units_per_watt: f32,
+    greatest_weight: f32,
     params: wgpu::Buffer,
     pub ledger: wgpu::Buffer,
     outputs_group: wgpu::BindGroup,
@@ -109,6 +110,8 @@ pub(crate) struct PhotonScene<'a> {
     pub settings: &'a RenderSettings,
     pub lights: &'a Lights,
     pub features: Features,
+    /// The greatest factor by which one wavelength changes a channel of light.
+    pub greatest_weight: f32,
     pub casters: &'a [BoundingSphere],
     /// A sphere around everything.
     pub around: BoundingSphere,
@@ -143,7 +146,7 @@ impl Photons {
         let words = COUNTERS + (scene.lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
         let no_landings = gpu.zeroed(LANDINGS, size_of::<Landing>() as u64)?;
-        let units_per_watt = units_per_watt(&lights, turns);
+        let units_per_watt = units_per_watt(&lights, turns, scene.greatest_weight);
         Ok(Self {
             lights,
             turns,
@@ -157,6 +160,7 @@ impl Photons {
                 ..Default::default()
             },
             seed: scene.settings.seed,
+            greatest_weight: scene.greatest_weight,
             photons_per_invocation: loop_limit.photons_per_invocation(scene.settings),
             guided,
             units_per_watt,
@@ -212,7 +216,7 @@ impl Photons {
                 light.params_group = guide_group(gpu, &pass.params_layout, &self.params, &light.guide)?;
             }
         }
-        self.units_per_watt = units_per_watt(&self.lights, self.turns);
+        self.units_per_watt = units_per_watt(&self.lights, self.turns, self.greatest_weight);
         self.template.units_per_watt = self.units_per_watt;
         Ok(PilotReport {
             photons: flights.iter().flatten().map(|round| round.landings.len() as u64).sum(),
@@ -316,6 +320,7 @@ impl Photons {
             escaped: account(ledger::ESCAPED),
             cut_off: account(ledger::CUT_OFF),
             shading_normals: account(ledger::SHADING_NORMALS),
+            dispersion: account(ledger::DISPERSION),
             units_per_watt: f64::from(self.units_per_watt),
         }
     }
@@ -326,14 +331,14 @@ fn flux_factor(emitter: &Emitter, turns: u64) -> f32 {
     turns as f32 / emitter.photon_share as f32
 }
 
-/// Units in a watt, such that the largest photon of all lights has 2²⁴.
-fn units_per_watt(lights: &[PhotonLight], turns: u64) -> f32 {
+/// Units in a watt, such that the largest photon of all lights has 2²⁴, also where one wavelength multiplies it by `greatest_weight`.
+fn units_per_watt(lights: &[PhotonLight], turns: u64, greatest_weight: f32) -> f32 {
     let largest = |light: &PhotonLight| {
         let unguided = light.emission.largest_photon(&light.emitter) * flux_factor(&light.emitter, turns);
         unguided / light.guide.least_density() as f32
     };
     let largest = lights.iter().map(largest).fold(f32::MIN_POSITIVE, f32::max);
-    (LARGEST_PHOTON_UNITS / largest).log2().floor().exp2()
+    (LARGEST_PHOTON_UNITS / (largest * greatest_weight)).log2().floor().exp2()
 }
 
 /// The bind group of params and guide.
@@ -383,8 +388,9 @@ impl Ledger {
     /// Emitted minus everything that became of it, in units: 0 in every channel.
     pub fn residue(&self) -> [i64; 3] {
         std::array::from_fn(|channel| {
-            let spent = [self.deposited, self.direct, self.absorbed, self.escaped, self.cut_off, self.shading_normals];
-            self.emitted[channel] - spent.iter().map(|account| account[channel]).sum::<i64>()
+            let spent = [self.deposited, self.direct, self.absorbed, self.escaped, self.cut_off];
+            let changed = [self.shading_normals, self.dispersion];
+            self.emitted[channel] - spent.iter().chain(&changed).map(|account| account[channel]).sum::<i64>()
         })
     }
 }

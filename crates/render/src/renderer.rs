@@ -19,6 +19,7 @@ use crate::{
     photon_pass::{PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
+    spectra_records::greatest_weight,
 };
 
 /// What is set once for a renderer.
@@ -136,6 +137,7 @@ impl Renderer {
             settings: &scene.settings,
             lights: &host.lights,
             features: host.features,
+            greatest_weight: greatest_weight(scene),
             casters: &host.casters,
             around: host.around,
         };

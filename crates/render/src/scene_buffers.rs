@@ -13,11 +13,12 @@ use crate::{
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
     material_records::material,
+    spectra_records::spectra_record,
     texture_records::TextureRecords,
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 12] = [Binding::Records; 12];
+pub(crate) const BINDINGS: [Binding; 13] = [Binding::Records; 13];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -31,6 +32,9 @@ const ENVIRONMENT: Purpose = Purpose { what: "the environment's picture", remedy
 const COORDINATES: Purpose = Purpose { what: "the triangles' texture coordinates", remedy: "use fewer triangles" };
 const TEXTURES: Purpose = Purpose { what: "the list of textures", remedy: "use fewer textures" };
 const TEXELS: Purpose = Purpose { what: "the textures' pictures", remedy: "use smaller pictures" };
+
+const SPECTRA: Purpose =
+    Purpose { what: "the indices of refraction over the wavelength", remedy: "use fewer materials with dispersion" };
 
 /// The scene's records, and what they weigh.
 #[derive(Debug)]
@@ -70,6 +74,7 @@ impl SceneBuffers {
             gpu.records(TEXTURES, &pictures.materials)?,
             gpu.records(TEXTURES, &pictures.textures)?,
             gpu.records(TEXELS, &pictures.texels)?,
+            gpu.records(SPECTRA, &spectra_record(scene))?,
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 /// What became of one light's photons, in units of fixed-point sums. The terms are differences of the same integers, so that
-/// emitted = deposited + direct + absorbed + escaped + cut off + shading normals exactly.
+/// emitted = deposited + direct + absorbed + escaped + cut off + shading normals + dispersion exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// Flux that left the light toward the casters' bounds.
@@ -20,6 +20,8 @@ pub struct Ledger {
     pub cut_off: [i64; 3],
     /// Flux taken (negative: given) by interpolated normals.
     pub shading_normals: [i64; 3],
+    /// Flux taken (negative: given) by the colours of single wavelengths; its mean is 0.
+    pub dispersion: [i64; 3],
     /// Units in a watt, times the photons emitted over every light.
     pub units_per_watt: f64,
 }

@@ -143,6 +143,14 @@ impl Material {
         }
     }
 
+    /// A dielectric's index of refraction at [`STATED_WAVELENGTH`](crate::STATED_WAVELENGTH) and how it changes; none if it does not.
+    pub fn dispersion(&self) -> Option<(f32, Dispersion)> {
+        match self.kind {
+            MaterialKind::Dielectric { ior, dispersion, .. } if !dispersion.is_none() => Some((ior, dispersion)),
+            _ => None,
+        }
+    }
+
     /// Whether rays may pass as if the surface were not there.
     pub fn has_holes(&self) -> bool {
         let least = least(&self.textures.opacity, self.opacity);

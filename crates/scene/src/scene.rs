@@ -43,6 +43,14 @@ pub struct Object {
     pub map_size: Option<u32>,
 }
 
+impl Scene {
+    /// Whether light has wavelengths in it: one is set, or some object's index of refraction changes with the wavelength.
+    pub fn has_dispersion(&self) -> bool {
+        let mut shown = self.objects.iter().flat_map(|object| &object.materials);
+        self.settings.wavelength.is_some() || shown.any(|&index| self.materials[index].dispersion().is_some())
+    }
+}
+
 impl Object {
     /// The index into [`Scene::materials`] of a triangle.
     ///

@@ -6,6 +6,7 @@ use diacaustic_scene::MaterialKind;
 use glam::DVec3;
 
 use crate::snell::reflect;
+use crate::spectrum::Spectrum;
 
 use super::{Factors, PreparedMaterial};
 
@@ -21,18 +22,24 @@ pub struct Base {
 }
 
 impl Base {
-    /// The base of a material at a point, if it has one. `ambient` is the scene's.
-    pub(super) fn of(prepared: &PreparedMaterial, factors: &Factors, ambient: DVec3) -> Option<Self> {
+    /// The base of a material at a point, if it has one, for light of a spectrum. `ambient` is the scene's.
+    pub(super) fn of(
+        prepared: &PreparedMaterial,
+        factors: &Factors,
+        ambient: DVec3,
+        spectrum: &Spectrum,
+    ) -> Option<Self> {
         if !prepared.is_receiver {
             return None;
         }
         let (ambient, phong) = match prepared.material.kind {
             MaterialKind::Phong { ambient: factor, specular, shininess, .. } => {
-                (ambient * factor.as_dvec3() * factors.color, Some((specular.as_dvec3(), f64::from(shininess))))
+                let ambient = spectrum.color(ambient) * spectrum.color(factor.as_dvec3() * factors.color);
+                (ambient, Some((spectrum.color(specular.as_dvec3()), f64::from(shininess))))
             }
             _ => (DVec3::ZERO, None),
         };
-        Some(Self { albedo: resolved_albedo(prepared, factors), ambient, phong })
+        Some(Self { albedo: spectrum.color(resolved_albedo(prepared, factors)), ambient, phong })
     }
 
     /// Phong's lobe toward light in plain sight, 1/sr; the cosine is not in it.

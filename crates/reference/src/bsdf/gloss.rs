@@ -26,7 +26,7 @@ impl Surface {
         let m = (wo + wi).normalize();
         let (cos_o, cos_i) = (wo.dot(n), wi.dot(n));
         let facets = microfacets.distribution(m.dot(n)) * microfacets.masking_shadowing(cos_o, cos_i);
-        facets / (4.0 * cos_o) * self.specular.fresnel(wo.dot(m))
+        facets / (4.0 * cos_o) * self.reflectance(wo.dot(m))
     }
 
     /// Walter et al. 2007, equation 21, with η² for radiance.
@@ -40,6 +40,6 @@ impl Surface {
         let (cos_o, cos_i) = (wo.dot(n), -wi.dot(n));
         let facets = microfacets.distribution(m.dot(n)) * microfacets.masking_shadowing(cos_o, cos_i);
         let jacobian = o * -i / (cos_o * (eta * o + i).powi(2));
-        eta * eta * facets * jacobian * (1.0 - self.specular.fresnel(o))
+        eta * eta * facets * jacobian * (1.0 - self.reflectance(o))
     }
 }

@@ -125,18 +125,18 @@ impl Surface {
 
     /// The way on about the microfacet normal m of a surface whose normal is n.
     fn way(&self, direction: DVec3, n: DVec3, m: DVec3, choice: f64) -> Way {
-        let fresnel = self.specular.fresnel(-direction.dot(m));
+        let cos = -direction.dot(m);
         if self.base.is_some() {
-            let at_normal = self.specular.fresnel(-direction.dot(n));
-            let chance = at_normal.element_sum() / 3.0;
+            let cos_o = -direction.dot(n);
+            let chance = self.chance_of_gloss(cos_o);
             return if choice < chance {
-                Way::Bounce(Bounce::reflected(direction, m, fresnel / chance))
+                Way::Bounce(Bounce::reflected(direction, m, self.reflectance(cos) / chance))
             } else {
-                Way::Base((1.0 - at_normal) / (1.0 - chance))
+                Way::Base(self.passed_to_base(cos_o) / (1.0 - chance))
             };
         }
         Way::Bounce(match self.specular {
-            Specular::Dielectric { .. } | Specular::ThinWalled { .. } if choice < fresnel.x => {
+            Specular::Dielectric { .. } | Specular::ThinWalled { .. } if choice < self.reflectance(cos).x => {
                 Bounce::reflected(direction, m, DVec3::ONE)
             }
             Specular::Dielectric { eta, tint } => match refract(direction, m, eta) {
@@ -146,7 +146,7 @@ impl Surface {
             Specular::ThinWalled { tint, .. } => {
                 Bounce { direction, transmitted: true, straight: true, weight: tint, eta: 1.0 }
             }
-            _ => Bounce::reflected(direction, m, fresnel),
+            _ => Bounce::reflected(direction, m, self.reflectance(cos)),
         })
     }
 
@@ -154,13 +154,13 @@ impl Surface {
     pub(crate) fn reflect_off_gloss(&self, facing: &Facing, wo: DVec3, v: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let (microfacets, n_s) = (self.microfacets?, facing.normal_shading);
         let m = visible_normal(&microfacets, n_s, wo, v);
-        let bounce = Bounce::reflected(-wo, m, self.specular.fresnel(wo.dot(m)));
+        let bounce = Bounce::reflected(-wo, m, self.reflectance(wo.dot(m)));
         let is_above = bounce.is_on_its_side_of(n_s) && bounce.is_on_its_side_of(facing.normal_geometric);
         let weight = bounce.weight * unshadowed(&microfacets, n_s, -wo, bounce.direction);
         is_above.then(|| (bounce.direction.normalize(), weight))
     }
 
-    /// The mean over the channels of the share that is reflected at cos θo: the probability of the gloss.
+    /// The mean of the shares of red, green and blue light that are reflected at cos θo: the probability of the gloss.
     pub(crate) fn chance_of_gloss(&self, cos_o: f64) -> f64 {
         self.specular.fresnel(cos_o).element_sum() / 3.0
     }

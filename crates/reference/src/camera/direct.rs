@@ -6,6 +6,7 @@ use crate::generator::Generator;
 use crate::geometry::{Departure, Ray, World};
 use crate::lights::{self, LightSample, sample_light, sample_surfaces};
 use crate::media::Media;
+use crate::spectrum::Spectrum;
 
 /// A place that light reaches.
 #[derive(Clone, Copy, Debug)]
@@ -17,6 +18,8 @@ pub(super) struct Vertex {
     pub(super) normal: DVec3,
     /// What surrounds it on the side of the normal, and on the other.
     pub(super) media: [Media; 2],
+    /// That of the light which is looked for.
+    pub(super) spectrum: Spectrum,
 }
 
 /// One sample of ∫ L f dω over all light in plain sight of a vertex, W/(m² sr) times the unit of `response` · sr, which
@@ -68,5 +71,6 @@ fn arriving(
         return DVec3::ZERO;
     }
     let side = usize::from(sample.wi.dot(vertex.normal) < 0.0);
-    response * sample.value * world.dielectrics().transmittance(&vertex.media[side], sample.distance)
+    let transmittance = world.dielectrics().transmittance(&vertex.media[side], sample.distance, &vertex.spectrum);
+    response * vertex.spectrum.color(sample.value) * transmittance
 }

@@ -34,7 +34,8 @@ pub struct Irradiance {
 pub fn irradiance_at(world: &World, point: DVec3, normal: DVec3, samples: u32, seed: u64) -> Irradiance {
     let origin = point + LIFT * world.epsilon() * normal;
     let media = world.media_around(origin.as_vec3());
-    let vertex = Vertex { point: origin, departure: Departure::Open, normal, media: [media; 2] };
+    let vertex =
+        Vertex { point: origin, departure: Departure::Open, normal, media: [media; 2], spectrum: world.spectrum() };
     let words = [seed, origin.x.to_bits(), origin.y.to_bits(), origin.z.to_bits()];
     let cosine = |wi: DVec3| DVec3::splat(wi.dot(normal).max(0.0));
     let [direct, via_casters] = estimate::mean(samples, &words, |generator: &mut Generator| {

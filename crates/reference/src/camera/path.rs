@@ -8,6 +8,7 @@ use crate::geometry::{Departure, Facing, Hit, Meeting, Ray, World};
 use crate::lights;
 use crate::media::Media;
 use crate::roulette;
+use crate::spectrum::Spectrum;
 
 use super::direct::{self, Vertex};
 use super::receiver::Receiver;
@@ -19,6 +20,10 @@ struct Walk<'a> {
     departure: Departure,
     /// What the ray is in.
     media: Media,
+    /// What `beta` and the light that is found stand for.
+    spectrum: Spectrum,
+    /// What the eye is in, if its index squared divides the radiance; else air.
+    around_eye: Media,
     /// Radiance at the eye per radiance along the ray, but for the factor η².
     beta: DVec3,
     /// The product of η² over the refractions so far.
@@ -50,7 +55,7 @@ pub(super) fn radiance_along(
     max_bounces: u32,
     generator: &mut Generator,
 ) -> DVec3 {
-    let mut walk = Walk::new(world, ray, media, true);
+    let mut walk = Walk { around_eye: media, ..Walk::new(world, ray, media, true) };
     // Diffuse vertices so far: the path has one ray more than bounces that it may use, to find caustics.
     let mut diffuse_vertices = 0;
     loop {
@@ -58,7 +63,7 @@ pub(super) fn radiance_along(
         let bounces_left = diffuse_vertices <= max_bounces;
         match end {
             ChainEnd::Open if bounces_left => {
-                walk.find(world.scene().background.as_dvec3());
+                walk.find_light(world.scene().background.as_dvec3());
                 return walk.radiance;
             }
             ChainEnd::Receiver(receiver) if bounces_left => {
@@ -87,6 +92,8 @@ impl<'a> Walk<'a> {
             ray,
             departure: Departure::Open,
             media,
+            spectrum: world.spectrum(),
+            around_eye: Media::AIR,
             beta: DVec3::ONE,
             eta_squared: 1.0,
             surfaces: 0,
@@ -95,7 +102,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Counts radiance that comes against the ray.
+    /// Counts a light's radiance, of a colour, that comes against the ray.
+    fn find_light(&mut self, radiance: DVec3) {
+        self.find(self.spectrum.color(radiance));
+    }
+
+    /// Counts radiance of the path's spectrum that comes against the ray.
     fn find(&mut self, radiance: DVec3) {
         self.radiance += self.eta_squared * self.beta * radiance;
     }
@@ -106,14 +118,14 @@ impl<'a> Walk<'a> {
             match self.world.meet(&self.ray, self.departure) {
                 None => {
                     if self.counts_light {
-                        self.find(lights::sky(self.world, self.ray.direction));
+                        self.find_light(lights::sky(self.world, self.ray.direction));
                     }
                     return ChainEnd::Open;
                 }
                 Some(Meeting::Light { light, distance, front }) => {
                     self.fly(distance);
                     if self.counts_light && front {
-                        self.find(lights::radiance_of(&self.world.scene().lights[light].kind));
+                        self.find_light(lights::radiance_of(&self.world.scene().lights[light].kind));
                     }
                     return ChainEnd::Nothing;
                 }
@@ -131,7 +143,7 @@ impl<'a> Walk<'a> {
     }
 
     fn fly(&mut self, distance: f64) {
-        self.beta *= self.world.dielectrics().transmittance(&self.media, distance);
+        self.beta *= self.world.dielectrics().transmittance(&self.media, distance, &self.spectrum);
     }
 
     /// Passes a caster, or says what receives.
@@ -141,9 +153,12 @@ impl<'a> Walk<'a> {
         self.departure = Departure::Triangle(hit.triangle);
         self.ray.origin = facing.point;
         if self.counts_light && facing.front {
-            self.find(self.world.emission(hit.triangle, hit.barycentric));
+            self.find_light(self.world.emission(hit.triangle, hit.barycentric));
         }
-        match Crossing::of(self.world, hit, &facing, self.media) {
+        if self.spectrum == Spectrum::Whole && Crossing::disperses(self.world, hit, &facing, self.media) {
+            self.disperse(generator.unit());
+        }
+        match Crossing::of(self.world, hit, &facing, self.media, self.spectrum) {
             Crossing::Nothing(media) => {
                 self.media = media;
                 self.counts_light = true;
@@ -154,6 +169,18 @@ impl<'a> Walk<'a> {
             }
             Crossing::Surface(surface, beyond) => self.pass_caster(&surface, &facing, beyond, generator),
         }
+    }
+
+    /// Takes the wavelength of a number. The eye's radiance is divided by the square of the index for all light, which the
+    /// one at the wavelength replaces.
+    fn disperse(&mut self, number: f64) {
+        let before = self.ior_around_eye();
+        (self.spectrum, self.beta) = Spectrum::drawn(number, self.beta);
+        self.eta_squared *= (before / self.ior_around_eye()).powi(2);
+    }
+
+    fn ior_around_eye(&self) -> f64 {
+        self.world.dielectrics().ior(&self.around_eye, &self.spectrum)
     }
 
     fn pass_caster(
@@ -210,6 +237,7 @@ impl<'a> Walk<'a> {
             departure: self.departure,
             normal: facing.normal_geometric,
             media: [self.media, beyond],
+            spectrum: self.spectrum,
         }
     }
 

@@ -28,6 +28,14 @@ impl World<'_> {
         map.map_or(n, |map| mapped_normal(map, triangle, hit.barycentric, n))
     }
 
+    /// The irradiance on a surface of the shading normal over that on the triangle, for light of a direction of flight.
+    /// Nothing comes from below the shading normal, as the eye sees it: it is for directions of the eye that it gives way.
+    pub(crate) fn landing_factor(&self, hit: &Hit, facing: &Facing, direction: DVec3) -> f64 {
+        let side = if facing.front { 1.0 } else { -1.0 };
+        let cos = -direction.dot(side * self.shading_normal(hit));
+        cos.max(0.0) / -direction.dot(facing.normal_geometric)
+    }
+
     /// What the material's pictures multiply its numbers by.
     pub(crate) fn factors(&self, hit: &Hit) -> Factors {
         let prepared = self.prepared(hit.triangle);

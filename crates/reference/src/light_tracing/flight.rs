@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::bsdf::{Crossing, Draw, Outcome};
 use crate::generator::Generator;
-use crate::geometry::{Departure, Facing, Hit, Meeting, Ray, World};
+use crate::geometry::{Departure, Meeting, Ray, World};
 use crate::roulette;
+use crate::spectrum::Spectrum;
 
 use super::emission::Start;
 
@@ -23,20 +24,26 @@ pub(super) struct Landing {
 /// Where light lands, if it does.
 pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Option<Landing> {
     let Start { mut ray, mut departure, mut media, flux } = start;
-    // Share of the flux at the start.
+    let mut spectrum = world.spectrum();
+    let mut flux = spectrum.color(flux);
+    // Share of that flux.
     let mut kept = DVec3::ONE;
     let mut casters = 0;
     loop {
         let Some(Meeting::Surface(hit)) = world.meet(&ray, departure) else { return None };
-        kept *= world.dielectrics().transmittance(&media, hit.distance);
+        kept *= world.dielectrics().transmittance(&media, hit.distance, &spectrum);
         let facing = world.facing(&hit, ray.direction);
+        if spectrum == Spectrum::Whole && Crossing::disperses(world, &hit, &facing, media) {
+            (spectrum, flux) = Spectrum::drawn(generator.unit(), flux * kept);
+            kept = DVec3::ONE;
+        }
         let land = |kept: DVec3, weight: DVec3| {
             let (point, direction) = (facing.point, ray.direction);
-            let flux = landing_factor(world, &hit, &facing, direction) * flux * kept * weight;
+            let flux = world.landing_factor(&hit, &facing, direction) * flux * kept * weight;
             Some(Landing { point, direction, flux, has_met_caster: casters > 0 })
         };
         let mut direction = ray.direction;
-        match Crossing::of(world, &hit, &facing, media) {
+        match Crossing::of(world, &hit, &facing, media, spectrum) {
             Crossing::Nothing(beyond) => media = beyond,
             Crossing::Surface(surface, _) if !surface.is_caster() => {
                 return land(kept, surface.passed_to_base(-ray.direction.dot(facing.normal_shading)));
@@ -63,12 +70,4 @@ pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Opt
         ray = Ray { origin: facing.point, direction };
         departure = Departure::Triangle(hit.triangle);
     }
-}
-
-/// The irradiance on a surface of the shading normal over that on the triangle, for light of a direction of flight. Nothing
-/// comes from below the shading normal, as the eye sees it: it is for directions of the eye that it gives way.
-fn landing_factor(world: &World, hit: &Hit, facing: &Facing, direction: DVec3) -> f64 {
-    let side = if facing.front { 1.0 } else { -1.0 };
-    let cos = -direction.dot(side * world.shading_normal(hit));
-    cos.max(0.0) / -direction.dot(facing.normal_geometric)
 }

@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 
-use crate::bsdf::{Crossing, Outcome, SHADING_NORMAL_LIMIT, Surface};
+use crate::bsdf::{Crossing, Draw, Outcome, SHADING_NORMAL_LIMIT, Surface};
+use crate::fresnel;
 use crate::geometry::{Departure, Facing, Hit, Meeting, Ray};
 use crate::media::Media;
 use crate::random::PhotonNumbers;
+use crate::spectrum::Spectrum;
 
 use super::emission::{Emitter, Start};
 use super::{Landing, Ledger, PhotonJob};
@@ -68,6 +70,8 @@ pub struct PhotonPath {
     pub end: End,
     /// Direction of its last flight, unit length.
     pub direction: DVec3,
+    /// What its flux stands for at the end.
+    pub spectrum: Spectrum,
     /// Where its flux went, W.
     pub ledger: Ledger,
 }
@@ -79,6 +83,9 @@ struct Flight<'a> {
     ray: Ray,
     departure: Departure,
     flux: DVec3,
+    spectrum: Spectrum,
+    /// v, the number of its wavelength.
+    wavelength_number: f64,
     /// What it is in.
     media: Media,
     vertices: Vec<Vertex>,
@@ -87,23 +94,28 @@ struct Flight<'a> {
 
 pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath {
     let numbers = PhotonNumbers::new(job.seed, job.light as u32, photon);
+    let numbers = if job.world.has_dispersion() { numbers.with_wavelength() } else { numbers };
     let drawn = [0, 1, 2, 3].map(|dimension| numbers.emission(dimension));
     let (moved, density) = job.guide.map_or((drawn, 1.0), |guide| guide.move_numbers(drawn));
     let Start { ray, flux } = emitter.emit(moved);
-    let flux = flux / density;
+    let wavelength_number = numbers.wavelength();
+    let spectrum = job.world.spectrum();
+    let flux = spectrum.color(flux / density);
     let mut flight = Flight {
         job,
         numbers,
         ray,
         departure: Departure::Light(job.light),
         flux,
+        spectrum,
+        wavelength_number,
         media: emitter.media(),
         vertices: Vec::new(),
         ledger: Ledger { emitted: flux, ..Ledger::default() },
     };
     let end = flight.follow();
-    let Flight { ray: last, vertices, ledger, .. } = flight;
-    PhotonPath { start: ray, flux, vertices, end, direction: last.direction, ledger }
+    let Flight { ray: Ray { direction, .. }, vertices, spectrum, ledger, .. } = flight;
+    PhotonPath { start: ray, flux, vertices, end, direction, spectrum, ledger }
 }
 
 impl Flight<'_> {
@@ -132,9 +144,11 @@ impl Flight<'_> {
     /// Goes on from a caster; ends on a receiver.
     fn meet_surface(&mut self, hit: &Hit) -> Option<End> {
         let world = self.job.world;
-        self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance));
+        self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance, &self.spectrum));
         let facing = world.facing(hit, self.ray.direction);
-        match Crossing::of(world, hit, &facing, self.media) {
+        let is_first = self.spectrum == Spectrum::Whole && Crossing::disperses(world, hit, &facing, self.media);
+        let choice = if is_first { self.split_colors(hit, &facing) } else { None };
+        match Crossing::of(world, hit, &facing, self.media, self.spectrum) {
             Crossing::Nothing(media) => {
                 self.media = media;
                 self.record(hit, facing.point, Event::Passed);
@@ -145,13 +159,25 @@ impl Flight<'_> {
                 let weight = surface.passed_to_base(-self.ray.direction.dot(facing.normal_shading));
                 Some(self.land(hit, &facing, weight))
             }
-            Crossing::Surface(surface, beyond) => self.meet_caster(hit, &facing, &surface, beyond),
+            Crossing::Surface(surface, beyond) => self.meet_caster(hit, &facing, &surface, beyond, choice),
         }
     }
 
-    fn meet_caster(&mut self, hit: &Hit, facing: &Facing, surface: &Surface, beyond: Media) -> Option<End> {
+    /// `choice` stands in for the number of the choice if that is made already.
+    fn meet_caster(
+        &mut self,
+        hit: &Hit,
+        facing: &Facing,
+        surface: &Surface,
+        beyond: Media,
+        choice: Option<f64>,
+    ) -> Option<End> {
         let numbers = &mut self.numbers;
-        match surface.scatter(facing, self.ray.direction, || numbers.next_caster()) {
+        let draw = || {
+            let next = numbers.next_caster();
+            Draw { choice: choice.unwrap_or(next.choice), ..next }
+        };
+        match surface.scatter(facing, self.ray.direction, draw) {
             Outcome::Base(weight) => Some(self.land(hit, facing, weight)),
             Outcome::Lost => {
                 self.attenuate(DVec3::ZERO);
@@ -185,9 +211,10 @@ impl Flight<'_> {
         let has_met_caster = !self.vertices.is_empty();
         self.attenuate(weight);
         if has_met_caster {
-            let [shading, geometric] =
-                [facing.normal_shading, facing.normal_geometric].map(|n| self.ray.direction.dot(n));
-            self.correct((shading / geometric).abs().min(SHADING_NORMAL_LIMIT));
+            // The limit keeps grazing photons from making bright dots. Light tracing and camera paths, which are the
+            // truth, have none: they find more light where it grazes the triangle, but not its shading normal.
+            let factor = self.job.world.landing_factor(hit, facing, self.ray.direction);
+            self.correct(factor.min(SHADING_NORMAL_LIMIT));
         }
         let Facing { point, front, .. } = *facing;
         let landing = Landing { triangle: hit.triangle, barycentric: hit.barycentric, front, flux: self.flux };
@@ -213,6 +240,49 @@ impl Flight<'_> {
         let corrected = self.flux * factor;
         self.ledger.shading_normals += self.flux - corrected;
         self.flux = corrected;
+    }
+
+    /// The first boundary that disperses: reflects all colours, or takes a wavelength. Returns the number of the choice between
+    /// reflection and refraction if that is made.
+    fn split_colors(&mut self, hit: &Hit, facing: &Facing) -> Option<f64> {
+        let world = self.job.world;
+        let Crossing::Surface(surface, beyond) = Crossing::of(world, hit, facing, self.media, Spectrum::Whole) else {
+            return None;
+        };
+        let dielectrics = world.dielectrics();
+        let eta = |spectrum| dielectrics.ior(&self.media, spectrum) / dielectrics.ior(&beyond, spectrum);
+        let stated = eta(&Spectrum::Whole);
+        if surface.is_rough() || stated >= 1.0 {
+            self.disperse();
+            return None;
+        }
+        let cos = -self.ray.direction.dot(facing.normal_shading);
+        let chance = fresnel::reflectance(cos, stated);
+        if self.wavelength_number < chance {
+            let colored = dielectrics.colored_ior(&self.media) / dielectrics.colored_ior(&beyond);
+            self.wavelength_number /= chance;
+            self.recolor(DVec3::from(colored.to_array().map(|eta| fresnel::reflectance(cos, eta))) / chance);
+            return Some(0.0);
+        }
+        self.wavelength_number = (self.wavelength_number - chance) / (1.0 - chance);
+        self.disperse();
+        let eta = dielectrics.ior(&self.media, &self.spectrum) / dielectrics.ior(&beyond, &self.spectrum);
+        self.recolor(DVec3::splat((1.0 - fresnel::reflectance(cos, eta)) / (1.0 - chance)));
+        Some(1.0)
+    }
+
+    /// Takes the wavelength of the photon's number.
+    fn disperse(&mut self) {
+        let before = self.flux;
+        (self.spectrum, self.flux) = Spectrum::drawn(self.wavelength_number, before);
+        self.ledger.dispersion += before - self.flux;
+    }
+
+    /// A factor of colours.
+    fn recolor(&mut self, factor: DVec3) {
+        let before = self.flux;
+        self.flux = before * factor;
+        self.ledger.dispersion += before - self.flux;
     }
 
     fn record(&mut self, hit: &Hit, position: DVec3, event: Event) {

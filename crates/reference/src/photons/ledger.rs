@@ -21,12 +21,15 @@ pub struct Ledger {
     pub cut_off: DVec3,
     /// What factors of shading normals took away; negative where they added.
     pub shading_normals: DVec3,
+    /// What was lost where photons took a wavelength, negative where they won; its mean is 0.
+    pub dispersion: DVec3,
 }
 
 impl Ledger {
     /// The sum of all fates, which is what was emitted but for rounding.
     pub fn accounted(&self) -> DVec3 {
-        self.deposited + self.direct + self.absorbed + self.escaped + self.cut_off + self.shading_normals
+        let flown = self.deposited + self.direct + self.absorbed + self.escaped + self.cut_off;
+        flown + self.shading_normals + self.dispersion
     }
 }
 
@@ -39,5 +42,6 @@ impl AddAssign for Ledger {
         self.escaped += other.escaped;
         self.cut_off += other.cut_off;
         self.shading_normals += other.shading_normals;
+        self.dispersion += other.dispersion;
     }
 }

@@ -197,12 +197,6 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// A switch.
-    pub(super) fn boolean(&self) -> Result<bool, Error> {
-        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
-        Ok(*boolean)
-    }
-
     /// A whole number that is not negative.
     pub(super) fn whole(&self) -> Result<u64, Error> {
         let expected = "a whole number, 0 or greater";
@@ -223,6 +217,12 @@ impl<'d> Entry<'d> {
         let (least, most) = (i32::MIN, i32::MAX);
         i32::from_str_radix(integer.as_str(), integer.radix())
             .map_err(|_| self.error(format!("is {}; it must be from {least} to {most}", integer.as_str())))
+    }
+
+    /// `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool, Error> {
+        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
+        Ok(*boolean)
     }
 
     /// Three numbers.
