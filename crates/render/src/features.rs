@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
+use diacaustic_scene::{Material, MaterialKind, RenderSettings, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
 use crate::{gpu::Gpu, lights::Lights};
@@ -32,6 +32,8 @@ pub(crate) struct Features {
     photon_light_kind: u32,
     /// Whether a guide moves photons.
     guide: bool,
+    /// Whether photons have footprints.
+    footprints: bool,
     /// Whether camera paths note which texels they see.
     sightings: bool,
 }
@@ -52,14 +54,17 @@ impl Features {
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
             guide: false,
+            footprints: false,
             sightings: false,
         }
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
-    pub fn for_photons_of(self, kind: u32, guide: bool) -> Self {
+    pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
         let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
-        Self { gloss, conductors, textures, holes, dispersion, photon_light_kind: kind, guide, ..Self::default() }
+        let RenderSettings { guiding: guide, footprints, .. } = *settings;
+        let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
+        Self { gloss, conductors, textures, holes, dispersion, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -81,6 +86,7 @@ impl Features {
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
+            ("has_footprints", f64::from(self.footprints)),
             ("notes_sightings", f64::from(self.sightings)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
