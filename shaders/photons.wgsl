@@ -3,13 +3,14 @@
 import package::bsdf::base::gloss_reflectance;
 import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
-import package::emitter::emission::emit;
+import package::emitter::emission::{emit, Emission};
 import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
-import package::layout::features::{has_dispersion, has_guide, has_textures};
-import package::layout::records::{load_material, load_triangle};
+import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
+import package::layout::features::{has_dispersion, has_footprints, has_guide, has_textures, photon_light_kind};
+import package::layout::records::{load_corners, load_material, load_object, load_triangle};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
@@ -18,9 +19,11 @@ import package::layout::photon_pass::{
 };
 import package::layout::scene::{
     Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
+    LIGHT_DISTANT, LIGHT_ENVIRONMENT, MATERIAL_THIN_WALLED, Triangle,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
+import package::sampling::warp::frame;
 import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
 import package::texture::surface::textured_surface;
 
@@ -46,6 +49,10 @@ struct Photon {
     /// The number of its first choice, in scenes with dispersion that of its wavelength.
     fifth_number: f32,
     wavelength: Wavelength,
+    /// How its ray changes over its part of the emission.
+    differential: Differential,
+    /// Whether that is known: no rough surface has spread it.
+    has_footprint: bool,
 }
 
 /// The largest flux of one photon in units; more can only come from interpolated normals, whose account takes the rest.
@@ -64,6 +71,146 @@ fn to_units(beta: vec3<f32>) -> vec3<i32> {
 /// Whether photons are thrown away but for where they land.
 fn is_pilot() -> bool {
     return has_guide && photon_params.pilot != 0u;
+}
+
+/// The least number of photons that a footprint is made for.
+const LEAST_COUNT: u32 = 16384u;
+/// The area of emission that a footprint covers, in shares of one photon.
+const FOOTPRINT_SHARES: f32 = 4.0;
+
+/// Two directions of the emission, as long as the deviation of the photon's share of it.
+fn emitted_differential(emission: Emission, index: u32, density: f32) -> Differential {
+    let count = max(f32(1u << min(32u - countLeadingZeros(index), 31u)), f32(LEAST_COUNT));
+    let width = sqrt(FOOTPRINT_SHARES / 12.0 * emission.spread / (count * density));
+    let basis = frame(emission.direction);
+    let a = width * basis.tangent;
+    let b = width * basis.bitangent;
+    let none = vec3<f32>(0.0);
+    if photon_light_kind == LIGHT_DISTANT || photon_light_kind == LIGHT_ENVIRONMENT {
+        return Differential(a, b, none, none);
+    }
+    return Differential(none, none, a, b);
+}
+
+/// Moves the differential to the hit.
+fn transfer_differential(photon: ptr<function, Photon>, t: f32, n_g: vec3<f32>) {
+    let r = (*photon).differential;
+    let d = (*photon).direction;
+    (*photon).differential.origin_1 = transfer(r.origin_1, r.direction_1, d, t, n_g);
+    (*photon).differential.origin_2 = transfer(r.origin_2, r.direction_2, d, t, n_g);
+}
+
+/// Turns the differential at a surface, from direction d.
+fn turn_differential(
+    photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: SurfacePoint, n: vec3<f32>, after: vec3<f32>, eta: f32, transmitted: bool,
+) {
+    let r = (*photon).differential;
+    let d = (*photon).direction;
+    let dn_1 = normal_change(hit, triangle, point, n, r.origin_1);
+    let dn_2 = normal_change(hit, triangle, point, n, r.origin_2);
+    (*photon).differential.direction_1 = turn_change(d, r.direction_1, n, dn_1, after, eta, transmitted);
+    (*photon).differential.direction_2 = turn_change(d, r.direction_2, n, dn_2, after, eta, transmitted);
+}
+
+/// The most texels from the middle of a footprint to its end, along an axis.
+const LARGEST_REACH: f32 = 12.0;
+
+/// An elliptic kernel on a map, texels.
+struct Ellipse {
+    middle: vec2<f32>,
+    /// Unit axis.
+    axis: vec2<f32>,
+    /// Inverse squared radii along the axis and across it.
+    inverse: vec2<f32>,
+}
+
+/// Epanechnikov's kernel, not normalised.
+fn kernel_weight(ellipse: Ellipse, place: vec2<u32>) -> f32 {
+    let v = vec2<f32>(place) - ellipse.middle;
+    let w = vec2<f32>(dot(v, ellipse.axis), v.x * ellipse.axis.y - v.y * ellipse.axis.x);
+    return max(1.0 - dot(w * w, ellipse.inverse), 0.0);
+}
+
+/// Lays flux over the ellipse of the photon's footprint; returns false if it is too small.
+fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, front: bool) -> bool {
+    let c = load_corners(hit.triangle);
+    let object = load_object(triangle.object);
+    let b = hit.barycentric;
+    let at = (1.0 - b.x - b.y) * c.texel_01.xy + b.x * c.texel_01.zw + b.y * vec2<f32>(c.texel_x_2, c.texel_y_2);
+    let along_1 = c.texel_01.zw - c.texel_01.xy;
+    let along_2 = vec2<f32>(c.texel_x_2, c.texel_y_2) - c.texel_01.xy;
+    let change_1 = barycentric_change(triangle, (*photon).differential.origin_1);
+    let change_2 = barycentric_change(triangle, (*photon).differential.origin_2);
+    let p = change_1.x * along_1 + change_1.y * along_2;
+    let q = change_2.x * along_1 + change_2.y * along_2;
+    // Covariance, texels².
+    let xx = p.x * p.x + q.x * q.x + 1.0 / 12.0;
+    let xy = p.x * p.y + q.x * q.y;
+    let yy = p.y * p.y + q.y * q.y + 1.0 / 12.0;
+    let larger = max(xx, yy);
+    if !(larger < 1e12) || larger < 0.25 {
+        return false;
+    }
+    // An Epanechnikov kernel over an ellipse has a sixth of its squared radius as variance. Larger ellipses shrink to the largest reach.
+    let mean = 0.5 * (xx + yy);
+    let half_difference = sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+    let lambda = vec2<f32>(mean + half_difference, max(mean - half_difference, 1.0 / 12.0));
+    let squares = 6.0 * min(lambda, vec2<f32>(LARGEST_REACH * LARGEST_REACH / 6.0));
+    var axis = vec2<f32>(lambda.x - yy, xy);
+    if dot(axis, axis) < 1e-8 * lambda.x * lambda.x {
+        axis = select(vec2<f32>(0.0, 1.0), vec2<f32>(1.0, 0.0), xx >= yy);
+    }
+    axis = normalize(axis);
+    let ellipse = Ellipse(at, axis, 1.0 / squares);
+    let reach = sqrt(vec2<f32>(
+        squares.x * axis.x * axis.x + squares.y * axis.y * axis.y, squares.x * axis.y * axis.y + squares.y * axis.x * axis.x,
+    ));
+    let size = vec2<f32>(f32(object.map_width - 1u), f32(object.map_height - 1u));
+    let low = vec2<u32>(clamp(ceil(at - reach), vec2<f32>(0.0), size));
+    let high = vec2<u32>(max(clamp(floor(at + reach), vec2<f32>(0.0), size), vec2<f32>(low)));
+    let width = high.x - low.x + 1u;
+    let texels = width * (high.y - low.y + 1u);
+    let layer = select(object.map_layers - 1u, 0u, front);
+    let first = object.map_first_texel + layer * object.map_height * object.map_width;
+    var sum = 0.0;
+    // Step by step, for software adapters divide integers lane by lane.
+    var place = low;
+    for (var k = 0u; k < texels; k++) {
+        sum += kernel_weight(ellipse, place);
+        let ends_row = place.x == high.x;
+        place = vec2<u32>(select(place.x + 1u, low.x, ends_row), place.y + select(0u, 1u, ends_row));
+    }
+    if sum < 1e-6 {
+        return false;
+    }
+    let total = (*photon).units;
+    var before = vec3<i32>(0);
+    var running = 0.0;
+    place = low;
+    for (var k = 0u; k < texels; k++) {
+        running += kernel_weight(ellipse, place);
+        var after = vec3<i32>(round(vec3<f32>(total) * (running / sum)));
+        if k + 1u == texels {
+            after = total;
+        }
+        let shares = after - before;
+        before = after;
+        let texel = first + place.y * object.map_width + place.x;
+        let ends_row = place.x == high.x;
+        place = vec2<u32>(select(place.x + 1u, low.x, ends_row), place.y + select(0u, 1u, ends_row));
+        if any(shares != vec3<i32>(0)) {
+            for (var channel = 0u; channel < 3u; channel++) {
+                let share = shares[channel];
+                let word = 6u * texel + 2u * channel;
+                let gained = carry(atomicAdd(&energy[word], bitcast<u32>(share)), share);
+                if gained != 0u {
+                    atomicAdd(&energy[word + 1u], gained);
+                }
+            }
+        }
+    }
+    deposits += 1u;
+    return true;
 }
 
 /// The photon at a place in this block.
@@ -92,6 +239,7 @@ fn start_photon(place: u32) -> Photon {
     accounts[LEDGER_EMITTED] += units;
     return Photon(
         index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth, wavelength,
+        emitted_differential(emission, index, guided.density), has_footprints,
     );
 }
 
@@ -149,7 +297,7 @@ fn choice_number(photon: ptr<function, Photon>, choice: u32) -> f32 {
 }
 
 /// Lets a photon end on a receiver's base.
-fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, point: SurfacePoint) {
+fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: SurfacePoint) {
     // Light that met no caster belongs to the camera pass.
     if (*photon).depth == 0u {
         accounts[LEDGER_DIRECT] += (*photon).units;
@@ -157,7 +305,12 @@ fn land(photon: ptr<function, Photon>, hit: Hit, object: u32, point: SurfacePoin
         let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
         change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         accounts[LEDGER_DEPOSITED] += (*photon).units;
-        deposit(photon, hit, object, point.front);
+        if has_footprints && (*photon).has_footprint && !is_pilot() {
+            if deposit_ellipse(photon, hit, triangle, point.front) {
+                return;
+            }
+        }
+        deposit(photon, hit, triangle.object, point.front);
     }
 }
 
@@ -171,6 +324,9 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
         let textured = textured_surface(material, point, hit, triangle, d);
         material = textured.material;
         point = textured.point;
+    }
+    if has_footprints {
+        transfer_differential(photon, hit.t, point.n_g);
     }
     let kind = material.kind & MATERIAL_KIND_BITS;
     let is_caster = (material.kind & MATERIAL_CASTER) != 0u;
@@ -213,7 +369,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
         gloss_chance = select(0.0, (gloss.x + gloss.y + gloss.z) / 3.0, is_caster);
         if u >= gloss_chance {
             change_flux(photon, (1.0 - gloss) / (1.0 - gloss_chance), LEDGER_ABSORBED);
-            land(photon, hit, triangle.object, point);
+            land(photon, hit, triangle, point);
             return false;
         }
     }
@@ -225,6 +381,12 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let event = scatter_specular(material, d, point.n_g, point.n_s, sides, u, v);
     change_flux(photon, event.weight / gloss_chance, LEDGER_ABSORBED);
     change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
+    if has_footprints {
+        (*photon).has_footprint = (*photon).has_footprint && material.gloss <= 0.0;
+        if !(event.transmitted && kind == MATERIAL_THIN_WALLED) {
+            turn_differential(photon, hit, triangle, point, event.normal, event.direction, sides.eta, event.transmitted);
+        }
+    }
     if event.transmitted {
         (*photon).media = beyond;
     }
@@ -301,7 +463,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
             continue;
         }
         in_flight = meet_surface(&photon, hit);
-        if is_pilot() && in_flight {
+        if is_pilot() && in_flight && photon.depth > 0u {
             landings[photon.index].texel = LOST;
         }
     }

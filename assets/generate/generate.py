@@ -19,6 +19,7 @@ import leaf
 import metal
 import obj
 import png
+import prism
 import ring
 import ripples
 import sign
@@ -39,6 +40,7 @@ BUILDERS = {
     "drink": (drink.build, "What is in the tumbler; reaches a little into its wall and floor"),
     "ice-cube": (ice_cube.build, "Ice cube with rounded edges"),
     "ring": (ring.build, "Wide ring with rounded edges, a solid of revolution"),
+    "prism": (prism.build, "Prism on an equilateral triangle, standing"),
     "tube": (tube.build, "Ring of round cross-section, such as a neon tube"),
 }
 

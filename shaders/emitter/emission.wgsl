@@ -19,6 +19,9 @@ struct Emission {
     direction: vec3<f32>,
     /// Its flux before the light's share of all photons is divided out, W.
     flux: vec3<f32>,
+    /// Inverse density of the direction of a photon that leaves a fixed point of the light, sr; of its place across a fixed direction, m², for light
+    /// from infinitely far.
+    spread: f32,
 }
 
 /// The target that a number in [0, 1) chooses.
@@ -61,7 +64,9 @@ fn emit_aimed(light: Light, u: vec4<f32>) -> Emission {
             pdf += aim_pdf(k, cos_axis, cone_height(light.extent / distance(light.position, crossing)));
         }
     }
-    return Emission(origin, d, light.strength / pdf);
+    let reach = distance(origin, q);
+    let spread = PI * aim.radius * aim.radius * f32(photon_params.target_count) * dot(aim.axis, d) / (reach * reach);
+    return Emission(origin, d, light.strength / pdf, spread);
 }
 
 /// A ray from anywhere on a sphere in any direction, cosine-weighted.
@@ -75,7 +80,7 @@ fn emit_unaimed(light: Light, u: vec4<f32>) -> Emission {
     let height = sqrt(max(1.0 - dot(xy, xy), 0.0));
     let d = normalize(xy.x * basis.tangent + xy.y * basis.bitangent + height * n);
     let area = 4.0 * PI * light.extent * light.extent;
-    return Emission(light.position + light.extent * n, d, light.strength * (PI * area));
+    return Emission(light.position + light.extent * n, d, light.strength * (PI * area), PI);
 }
 
 /// 1 − cos of the cone that a target fills from a point; 2, every direction, from within it.
@@ -136,7 +141,7 @@ fn emit_toward(light: Light, u: vec4<f32>) -> Emission {
     if photon_light_kind == LIGHT_SPOT {
         shape = spot_falloff(light, toward.direction);
     }
-    return Emission(origin, toward.direction, strength * (shape / toward.pdf));
+    return Emission(origin, toward.direction, strength * (shape / toward.pdf), 1.0 / toward.pdf);
 }
 
 /// A ray from infinitely far across the casters' bounding spheres.
@@ -164,7 +169,8 @@ fn emit_across(light: Light, u: vec4<f32>) -> Emission {
     }
     // Back to a plane that touches the scene's bounding sphere.
     let back = dot(q - photon_params.scene_center, d) + photon_params.scene_radius;
-    return Emission(q - back * d, d, irradiance * (PI * f32(photon_params.target_count) / sum));
+    let spread = PI * f32(photon_params.target_count) / sum;
+    return Emission(q - back * d, d, irradiance * spread, spread);
 }
 
 /// The photon of emission numbers `u`.

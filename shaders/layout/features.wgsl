@@ -21,6 +21,8 @@ override has_holes: bool = true;
 override has_dispersion: bool = true;
 /// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.
 override photon_light_kind: u32 = 0u;
+/// Whether photons lay their flux over the footprint of the part of the emission that they stand for.
+override has_footprints: bool = true;
 /// Whether a guide moves photons.
 override has_guide: bool = true;
 /// Whether camera paths note which texels they see.

@@ -272,7 +272,7 @@ fn pictures_on_glass_metal_and_floor() {
                 _ => material.textures.color = Some(tiles()),
             }
         }
-        assert_alike(&scene, 5e-3);
+        assert_alike(&scene, 1e-2);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene};
+use diacaustic_scene::{Material, MaterialKind, RenderSettings, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
 use crate::{
@@ -36,6 +36,8 @@ pub(crate) struct Features {
     photon_light_kind: u32,
     /// Whether a guide moves photons.
     guide: bool,
+    /// Whether photons have footprints.
+    footprints: bool,
     /// Whether camera paths note which texels they see.
     sightings: bool,
     /// Light kept apart by how it came.
@@ -60,6 +62,7 @@ impl Features {
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
             guide: false,
+            footprints: false,
             sightings: false,
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
@@ -67,9 +70,11 @@ impl Features {
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
-    pub fn for_photons_of(self, kind: u32, guide: bool) -> Self {
+    pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
         let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
-        Self { gloss, conductors, textures, holes, dispersion, photon_light_kind: kind, guide, ..Self::default() }
+        let RenderSettings { guiding: guide, footprints, .. } = *settings;
+        let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
+        Self { gloss, conductors, textures, holes, dispersion, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -91,6 +96,7 @@ impl Features {
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
+            ("has_footprints", f64::from(self.footprints)),
             ("notes_sightings", f64::from(self.sightings)),
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),

@@ -131,7 +131,7 @@ impl Photons {
         let mut turns = 0;
         for emitter in &scene.lights.emitters {
             let Some(emission) = Emission::toward(emitter, scene.casters) else { continue };
-            let features = scene.features.for_photons_of(emitter.kind(), guided);
+            let features = scene.features.for_photons_of(emitter.kind(), scene.settings);
             let guide = Guide::even(emitter.kind(), &emission);
             lights.push(PhotonLight {
                 emitter: emitter.clone(),
@@ -161,7 +161,7 @@ impl Photons {
             },
             seed: scene.settings.seed,
             greatest_weight: scene.greatest_weight,
-            photons_per_invocation: loop_limit.photons_per_invocation(scene.settings.max_depth),
+            photons_per_invocation: loop_limit.photons_per_invocation(scene.settings),
             guided,
             units_per_watt,
             outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger, &no_landings]),

@@ -1,5 +1,6 @@
 //! What the adapter does with long loops.
 
+use diacaustic_scene::RenderSettings;
 use diacaustic_shaders::LOOP_CHECK;
 
 use crate::{
@@ -15,6 +16,9 @@ const NEEDED: u32 = 16_384;
 const PHOTONS_PER_INVOCATION: u32 = 16;
 /// Iterations to allow for each ray on an adapter with a limit: nodes and triangles met, with room for lanes that wait.
 const ITERATIONS_PER_RAY: u32 = 128;
+
+/// Iterations over the texels of the largest footprint, twice.
+const ITERATIONS_PER_FOOTPRINT: u32 = 2 * 25 * 25;
 
 const COUNTS: Purpose = Purpose { what: "the self-test's counters", remedy: "use another adapter" };
 
@@ -39,10 +43,10 @@ impl LoopLimit {
         Ok(Self { iterations: (ran < ASKED).then_some(ran) })
     }
 
-    /// Photons of at most `max_depth` rays that an invocation may take one after the other.
-    pub(crate) fn photons_per_invocation(self, max_depth: u32) -> u32 {
-        self.iterations.map_or(PHOTONS_PER_INVOCATION, |limit| {
-            (limit / ITERATIONS_PER_RAY.saturating_mul(max_depth)).clamp(1, PHOTONS_PER_INVOCATION)
-        })
+    /// Photons that an invocation may take one after the other.
+    pub(crate) fn photons_per_invocation(self, settings: &RenderSettings) -> u32 {
+        let of_footprint = if settings.footprints { ITERATIONS_PER_FOOTPRINT } else { 0 };
+        let of_photon = ITERATIONS_PER_RAY.saturating_mul(settings.max_depth).saturating_add(of_footprint);
+        self.iterations.map_or(PHOTONS_PER_INVOCATION, |limit| (limit / of_photon).clamp(1, PHOTONS_PER_INVOCATION))
     }
 }

@@ -81,6 +81,8 @@ pub struct RenderSettings {
     pub max_bounces: u32,
     /// Whether photons are sent where a pilot found that they matter to the picture, and not evenly toward all casters.
     pub guiding: bool,
+    /// Whether photons lay their flux over the part of the map that neighbouring photons leave open, and not over four texels.
+    pub footprints: bool,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// The pixel's reconstruction filter.
@@ -134,6 +136,7 @@ impl Default for RenderSettings {
             max_depth: 32,
             max_bounces: 8,
             guiding: true,
+            footprints: false,
             map_size: None,
             filter: PixelFilter::default(),
             wavelength: None,
