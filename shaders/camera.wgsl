@@ -5,20 +5,24 @@ import package::bsdf::albedo::albedo;
 import package::bsdf::base::{base_bsdf, gloss_reflectance};
 import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{evaluate_specular, outer_interface, scatter_specular, Interface};
-import package::emitter::illumination::{illuminate, FAR};
-import package::emitter::sky::{light_probability, sky_radiance};
+import package::emitter::illumination::{choose_light, illuminate, FAR};
+import package::emitter::sky::{light_probability, sky_light_radiance, sky_radiance};
 import package::emitter::sphere::{nearest_sphere, SphereHit};
-import package::film::layers::{add_to_data_layers, add_to_layer, add_to_squares};
-import package::film::texels::footprint;
+import package::film::layers::{
+    add_to_caustic_of_group, add_to_data_layers, add_to_group, add_to_layer, add_to_no_group, add_to_squares,
+};
+import package::film::texels::{footprint, Footprint};
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{
     camera_params, data_layers, film, irradiance, sightings, Sighting, LAYER_CAUSTIC, LAYER_DIRECT, LAYER_EMISSION, LAYER_INDIRECT,
 };
-import package::layout::features::{has_data_layers, has_dispersion, has_light_layers, has_textures, notes_sightings};
-import package::layout::records::{load_light, load_material, load_triangle, record_texel};
+import package::layout::features::{
+    has_data_layers, has_dispersion, has_distant_lights, has_light_layers, has_textures, light_group_count, notes_sightings,
+};
+import package::layout::records::{load_light, load_light_group, load_material, load_triangle, record_texel};
 import package::layout::scene::{
-    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
+    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_GROUP_SHIFT, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
     MATERIAL_TEXTURED, NONE,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
@@ -76,6 +80,8 @@ struct Path {
     /// Of this, what the first casters on the path send to the camera; the layer of the rest.
     unblocked_emission: vec3<f32>,
     shadow_layer: u32,
+    /// The light's group.
+    shadow_group: u32,
     /// The pixel, row by row from the top left.
     pixel: u32,
     /// The layer of light that the path meets.
@@ -202,10 +208,11 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
     return vertex;
 }
 
-/// Adds radiance to the path, and to a layer.
-fn add_light(path: ptr<function, Path>, layer: u32, radiance: vec3<f32>) {
+/// Adds radiance that a path meets, of lights of a group.
+fn add_light(path: ptr<function, Path>, group: u32, radiance: vec3<f32>) {
     (*path).radiance += radiance;
-    add_to_layer((*path).pixel, layer, radiance);
+    add_to_layer((*path).pixel, (*path).layer, radiance);
+    add_to_group((*path).pixel, group, radiance);
 }
 
 /// The layer of what the path gathers at a receiver: `first` at the first one.
@@ -247,25 +254,41 @@ fn add_emission(path: ptr<function, Path>, vertex: Vertex, t: f32) {
     let pdf = (*path).lobe_pdf;
     let weight = select(1.0, pdf / (pdf + light_pdf), pdf > 0.0);
     let counts = vertex.point.front && !(*path).lights_counted;
-    add_light(path, (*path).layer, select(vec3<f32>(0.0), (*path).beta * emission * weight, counts));
+    let group = vertex.material.kind >> MATERIAL_GROUP_SHIFT;
+    add_light(path, group, select(vec3<f32>(0.0), (*path).beta * emission * weight, counts));
 }
 
-/// Irradiance in a texel of the energy maps, W/m².
-fn map_irradiance(texel: u32) -> vec3<f32> {
-    return textureLoad(irradiance, record_texel(texel), 0).xyz;
+/// Irradiance around a place in the energy maps, W/m²: of all light's maps, entry 0, or of a light group's, its index plus 1.
+fn map_irradiance(place: Footprint, entry: u32) -> vec3<f32> {
+    let at = (1u + light_group_count) * place.texels + entry;
+    let w = place.weights;
+    return w.x * textureLoad(irradiance, record_texel(at.x), 0).xyz + w.y * textureLoad(irradiance, record_texel(at.y), 0).xyz
+        + w.z * textureLoad(irradiance, record_texel(at.z), 0).xyz + w.w * textureLoad(irradiance, record_texel(at.w), 0).xyz;
+}
+
+/// Adds what the maps of each light group hold, by the share that the receiver sends on, 1/sr.
+fn add_maps_of_groups(path: ptr<function, Path>, place: Footprint, reflected: vec3<f32>) {
+    for (var group = 0u; group < light_group_count; group++) {
+        let radiance = (*path).beta * reflected * at_wavelength(map_irradiance(place, 1u + group), (*path).wavelength);
+        add_to_group((*path).pixel, group, radiance);
+        if (*path).layer == LAYER_EMISSION {
+            add_to_caustic_of_group((*path).pixel, group, radiance);
+        }
+    }
 }
 
 /// Adds ambient light and what the receiver's energy map holds.
 fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     let place = footprint(hit, object, vertex.point.front);
-    let caustic = place.weights.x * map_irradiance(place.texels.x) + place.weights.y * map_irradiance(place.texels.y)
-        + place.weights.z * map_irradiance(place.texels.z) + place.weights.w * map_irradiance(place.texels.w);
-    let reflected = vertex.material.base / PI * (1.0 - vertex.gloss);
-    var sent = at_wavelength(reflected, (*path).wavelength) * at_wavelength(caustic, (*path).wavelength);
+    let caustic = map_irradiance(place, 0u);
+    let reflected = at_wavelength(vertex.material.base / PI * (1.0 - vertex.gloss), (*path).wavelength);
+    var sent = reflected * at_wavelength(caustic, (*path).wavelength);
+    add_maps_of_groups(path, place, reflected);
     add_to_layer((*path).pixel, layer_at_receiver(path, LAYER_CAUSTIC), (*path).beta * sent);
     if vertex.kind == MATERIAL_PHONG {
         let ambient = at_wavelength(vertex.material.tint, (*path).wavelength) * at_wavelength(camera_params.ambient, (*path).wavelength);
         add_to_layer((*path).pixel, LAYER_INDIRECT, (*path).beta * ambient);
+        add_to_no_group((*path).pixel, (*path).beta * ambient);
         sent += ambient;
     }
     (*path).radiance += (*path).beta * sent;
@@ -291,7 +314,8 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
     let point = vertex.point;
     let u_light = padded_1(camera_params.sample_index, (*path).seed, slot);
     let u = padded_2(camera_params.sample_index, (*path).seed, slot + 1u);
-    let light = illuminate(camera_params.light_count, point.position, u_light, u);
+    let index = choose_light(camera_params.light_count, u_light);
+    let light = illuminate(index, point.position, u);
     let wi = light.direction;
     let wo = -(*path).direction;
     let cos_light = dot(wi, point.n_s);
@@ -327,6 +351,9 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
             let emission = (*path).beta * at_wavelength(by_lobe, wavelength) * arriving;
             (*path).unblocked_emission = select(vec3<f32>(0.0), emission, is_emission);
             (*path).shadow_layer = layer_at_receiver(path, LAYER_DIRECT);
+        }
+        if light_group_count > 0u {
+            (*path).shadow_group = load_light_group(index);
         }
     }
 }
@@ -446,10 +473,19 @@ fn meet_sphere(path: ptr<function, Path>, sphere: SphereHit) {
     let weight = select(1.0, pdf / (pdf + light_probability(sphere.light) / solid_angle), pdf > 0.0);
     let strength = at_wavelength(light.strength, (*path).wavelength);
     let seen = (*path).beta * transmittance((*path).media, sphere.t, (*path).wavelength) * strength * weight;
-    add_light(path, (*path).layer, select(seen, vec3<f32>(0.0), (*path).lights_counted));
+    add_light(path, load_light_group(sphere.light), select(seen, vec3<f32>(0.0), (*path).lights_counted));
     if has_data_layers && !(*path).has_first_surface {
         let position = (*path).origin + sphere.t * (*path).direction;
         keep_first_surface(path, position, normalize(position - light.position), vec3<f32>(0.0));
+    }
+}
+
+/// Adds what lights that are infinitely far send to their groups.
+fn add_sky_of_groups(path: ptr<function, Path>) {
+    let end = select(0u, camera_params.light_count, light_group_count > 0u && has_distant_lights);
+    for (var i = camera_params.first_sky_light; i < end; i++) {
+        let radiance = sky_light_radiance(i, (*path).direction, (*path).lobe_pdf);
+        add_to_group((*path).pixel, load_light_group(i), (*path).beta * at_wavelength(radiance, (*path).wavelength));
     }
 }
 
@@ -461,8 +497,10 @@ fn meet_sky(path: ptr<function, Path>) {
     if !(*path).lights_counted {
         sky = sky_radiance(camera_params.first_sky_light, camera_params.light_count, (*path).direction, (*path).lobe_pdf);
         beyond += sky;
+        add_sky_of_groups(path);
     }
     (*path).radiance += (*path).beta * at_wavelength(beyond, (*path).wavelength);
+    add_to_no_group((*path).pixel, (*path).beta * at_wavelength(camera_params.background, (*path).wavelength));
     if has_light_layers {
         // Next-event estimation knows nothing of the background, which lights receivers as what bounces does.
         let of_background = layer_at_receiver(path, LAYER_EMISSION);
@@ -491,6 +529,9 @@ fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
         if has_light_layers && visible {
             add_to_layer((*path).pixel, LAYER_EMISSION, (*path).unblocked_emission);
             add_to_layer((*path).pixel, (*path).shadow_layer, (*path).unblocked - (*path).unblocked_emission);
+        }
+        if light_group_count > 0u && visible {
+            add_to_group((*path).pixel, (*path).shadow_group, (*path).unblocked);
         }
     }
     (*path).shadow_pending = false;

@@ -54,9 +54,8 @@ fn illuminate_from_surface(light: Light, probability: f32, point: vec3<f32>, u: 
     return drawn(direction, distance, place.radiance, pdf);
 }
 
-/// Draws one light by `u_light` and a point or direction of it by `u`, seen from `point`.
-fn illuminate(light_count: u32, point: vec3<f32>, u_light: f32, u: vec2<f32>) -> Illumination {
-    let index = choose_light(light_count, u_light);
+/// Draws a point or direction of a light by `u`, seen from `point`.
+fn illuminate(index: u32, point: vec3<f32>, u: vec2<f32>) -> Illumination {
     let light = load_light(index);
     let probability = light_probability(index);
     if light.kind == LIGHT_SPHERE {

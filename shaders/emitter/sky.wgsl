@@ -102,6 +102,21 @@ fn evaluate_environment(light: Light, direction: vec3<f32>) -> EnvironmentValue 
     return EnvironmentValue(light.strength * mix(upper, lower, g).xyz, pdf);
 }
 
+/// What reaches an eye from a light that is infinitely far, weighted as `sky_radiance` says; W/(m² sr).
+fn sky_light_radiance(index: u32, direction: vec3<f32>, lobe_pdf: f32) -> vec3<f32> {
+    let light = load_light(index);
+    let probability = light_probability(index);
+    // 1 − cos of the angle to the disc's middle, without cancellation.
+    let chord = direction - light.position;
+    let is_disc = light.kind != LIGHT_ENVIRONMENT && light.extent > 0.0 && 0.5 * dot(chord, chord) <= light.extent;
+    var value = EnvironmentValue(select(vec3<f32>(0.0), light.strength, is_disc), 1.0 / (2.0 * PI * max(light.extent, 1e-30)));
+    if has_environment && light.kind == LIGHT_ENVIRONMENT {
+        value = evaluate_environment(light, direction);
+    }
+    let weight = select(1.0, lobe_pdf / (lobe_pdf + probability * value.pdf), lobe_pdf > 0.0);
+    return weight * value.radiance;
+}
+
 /// What reaches an eye from beyond every object, but for the constant background; W/(m² sr). `lobe_pdf` is the density with which the
 /// direction was drawn where next-event estimation could have drawn it too (balance heuristic), else 0.
 fn sky_radiance(first_light: u32, light_count: u32, direction: vec3<f32>, lobe_pdf: f32) -> vec3<f32> {
@@ -110,17 +125,7 @@ fn sky_radiance(first_light: u32, light_count: u32, direction: vec3<f32>, lobe_p
         return radiance;
     }
     for (var i = first_light; i < light_count; i++) {
-        let light = load_light(i);
-        let probability = light_probability(i);
-        // 1 − cos of the angle to the disc's middle, without cancellation.
-        let chord = direction - light.position;
-        let is_disc = light.kind != LIGHT_ENVIRONMENT && light.extent > 0.0 && 0.5 * dot(chord, chord) <= light.extent;
-        var value = EnvironmentValue(select(vec3<f32>(0.0), light.strength, is_disc), 1.0 / (2.0 * PI * max(light.extent, 1e-30)));
-        if has_environment && light.kind == LIGHT_ENVIRONMENT {
-            value = evaluate_environment(light, direction);
-        }
-        let weight = select(1.0, lobe_pdf / (lobe_pdf + probability * value.pdf), lobe_pdf > 0.0);
-        radiance += weight * value.radiance;
+        radiance += sky_light_radiance(i, direction, lobe_pdf);
     }
     return radiance;
 }

@@ -6,6 +6,12 @@ fn carry(low: u32, value: i32) -> u32 {
     return wrapped + select(0u, 0xffffffffu, value < 0);
 }
 
+/// The sum of two signed 64-bit integers, low and high word each.
+fn wide_sum(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    let low = a.x + b.x;
+    return vec2<u32>(low, a.y + b.y + select(0u, 1u, low < a.x));
+}
+
 /// A signed 64-bit integer as the nearest f32.
 fn wide_to_f32(low: u32, high: u32) -> f32 {
     if high >= 0x80000000u {

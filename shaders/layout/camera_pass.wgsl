@@ -102,7 +102,8 @@ const LAYER_INDIRECT: u32 = 3u;
 const LIGHT_LAYERS: u32 = 4u;
 
 @group(1) @binding(0) var<uniform> camera_params: CameraParams;
-/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
+/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused. With several light groups, of each
+/// texel first all light's, then each group's.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;
 /// Where paths note what they see, an entry for each pixel.
@@ -111,3 +112,5 @@ const LIGHT_LAYERS: u32 = 4u;
 @group(2) @binding(3) var<storage, read_write> light_layers: array<vec4<f32>>;
 /// An entry for each pixel.
 @group(2) @binding(4) var<storage, read_write> data_layers: array<DataLayers>;
+/// For each pixel the sums of each light group's light, then of each one's caustic, then of light without group, W/(m² sr); the last component is unused.
+@group(2) @binding(5) var<storage, read_write> group_layers: array<vec4<f32>>;

@@ -31,3 +31,5 @@ override notes_sightings: bool = false;
 override has_light_layers: bool = false;
 /// Whether it is kept what pixels show, and how much their samples vary.
 override has_data_layers: bool = false;
+/// Light groups that are kept apart; 0 where none are.
+override light_group_count: u32 = 0u;

@@ -3,7 +3,7 @@
 import package::layout::scene::{
     corners, emitting_triangles, environment, lights, material_textures, materials, nodes, objects, spectra, surface_textures, texture_coordinates,
     texture_texels, triangles, BvhNode, Light, Material, MaterialTextures, Object, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
-    RECORDS_WIDTH_BITS, WAVELENGTH_STEPS,
+    LIGHT_GROUP_SHIFT, LIGHT_KIND_BITS, RECORDS_WIDTH_BITS, WAVELENGTH_STEPS,
 };
 
 /// The place of a texel, counted row by row.
@@ -96,9 +96,14 @@ fn load_light(index: u32) -> Light {
     return Light(
         texel_0.xyz, texel_0.w,
         texel_1.xyz, texel_1.w,
-        bitcast<vec3<f32>>(texel_2.xyz), texel_2.w,
+        bitcast<vec3<f32>>(texel_2.xyz), texel_2.w & LIGHT_KIND_BITS,
         bitcast<f32>(texel_3.x), bitcast<f32>(texel_3.y), texel_3.z, texel_3.w,
     );
+}
+
+/// The index of a light's group.
+fn load_light_group(light: u32) -> u32 {
+    return textureLoad(lights, record_texel(4u * light + 2u), 0).w >> LIGHT_GROUP_SHIFT;
 }
 
 /// Centre and radius alone of a sphere, metres.

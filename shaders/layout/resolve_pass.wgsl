@@ -8,14 +8,23 @@ struct ResolveParams {
     texel_count: u32,
     /// Workgroups along x.
     groups_x: u32,
+    /// Light groups whose maps there are.
+    light_groups: u32,
+    /// Texels from a light group's maps to the next one's.
+    group_texels: u32,
     /// Unused.
-    padding: u32,
+    padding_0: u32,
+    /// Unused.
+    padding_1: u32,
+    /// Unused.
+    padding_2: u32,
 }
 
 @group(0) @binding(0) var<uniform> resolve_params: ResolveParams;
-/// Signed 64-bit sums of flux, low and high word: for each texel and channel.
+/// Signed 64-bit sums of flux, low and high word: for each light group, texel and channel.
 @group(0) @binding(1) var<storage, read> energy_sums: array<u32>;
 /// Area of each texel, m².
 @group(0) @binding(2) var<storage, read> texel_areas: array<f32>;
-/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
+/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused. With several light groups, of each
+/// texel first all light's, then each group's.
 @group(0) @binding(3) var resolved_irradiance: texture_storage_2d<rgba32float, write>;

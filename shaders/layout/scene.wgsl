@@ -118,7 +118,7 @@ struct Object {
 struct Material {
     /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture. Of a dielectric its indices for red, green and blue.
     base: vec3<f32>,
-    /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
+    /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER; from MATERIAL_GROUP_SHIFT on the index of its light group.
     kind: u32,
     /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
     specular: vec3<f32>,
@@ -150,7 +150,7 @@ struct Light {
     cumulative_probability: f32,
     /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
     axis: vec3<f32>,
-    /// One of the LIGHT_ constants.
+    /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
     kind: u32,
     /// Cosine of the angle up to which a spot shines fully.
     cos_inner: f32,
@@ -178,6 +178,8 @@ const MATERIAL_CASTER: u32 = 0x100u;
 const MATERIAL_RECEIVER: u32 = 0x200u;
 /// Set where pictures make the surface differ from point to point.
 const MATERIAL_TEXTURED: u32 = 0x400u;
+/// Where the index of the light group stands in `Material::kind`.
+const MATERIAL_GROUP_SHIFT: u32 = 16u;
 
 /// Set where the corners' normals are interpolated.
 const TRIANGLE_SMOOTH: u32 = 1u;
@@ -198,6 +200,10 @@ const LIGHT_SPOT: u32 = 2u;
 const LIGHT_SURFACE: u32 = 3u;
 const LIGHT_DISTANT: u32 = 4u;
 const LIGHT_ENVIRONMENT: u32 = 5u;
+/// The bits of `Light::kind` that tell the kind.
+const LIGHT_KIND_BITS: u32 = 0xffu;
+/// Where the index of the group stands in it.
+const LIGHT_GROUP_SHIFT: u32 = 16u;
 
 /// Marks the absence of an index.
 const NONE: u32 = 0xffffffffu;

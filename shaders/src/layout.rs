@@ -162,7 +162,7 @@ shared_structs! {
     struct Material {
         /// Effective albedo ρ* of the base: what a diffuse surface reflects, or what lies under a coat or gloss. Of a textured surface the colour before its picture. Of a dielectric its indices for red, green and blue.
         base: [f32; 3],
-        /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER.
+        /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER; from MATERIAL_GROUP_SHIFT on the index of its light group.
         kind: u32,
         /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
         specular: [f32; 3],
@@ -193,7 +193,7 @@ shared_structs! {
         cumulative_probability: f32,
         /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
         axis: [f32; 3],
-        /// One of the LIGHT_ constants.
+        /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
         kind: u32,
         /// Cosine of the angle up to which a spot shines fully.
         cos_inner: f32,
@@ -357,8 +357,16 @@ shared_structs! {
         texel_count: u32,
         /// Workgroups along x.
         groups_x: u32,
+        /// Light groups whose maps there are.
+        light_groups: u32,
+        /// Texels from a light group's maps to the next one's.
+        group_texels: u32,
         /// Unused.
-        padding: u32,
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+        /// Unused.
+        padding_2: u32,
     }
     /// A ray asked about.
     struct QueryRay {
@@ -441,6 +449,8 @@ pub mod material_kind {
     pub const RECEIVER: u32 = 0x200;
     /// Set where pictures make the surface differ from point to point.
     pub const TEXTURED: u32 = 0x400;
+    /// Where the index of the light group stands.
+    pub const GROUP_SHIFT: u32 = 16;
 }
 
 /// Bits of [`Triangle::flags`].
@@ -493,6 +503,8 @@ pub mod light_kind {
     pub const DISTANT: u32 = 4;
     /// Light from everywhere.
     pub const ENVIRONMENT: u32 = 5;
+    /// Where the index of the group stands.
+    pub const GROUP_SHIFT: u32 = 16;
 }
 
 /// Accounts of a light's ledger, in the order of the kernel's sums.
@@ -536,6 +548,7 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("MATERIAL_CASTER", material_kind::CASTER),
     ("MATERIAL_RECEIVER", material_kind::RECEIVER),
     ("MATERIAL_TEXTURED", material_kind::TEXTURED),
+    ("MATERIAL_GROUP_SHIFT", material_kind::GROUP_SHIFT),
     ("TRIANGLE_SMOOTH", triangle_flag::SMOOTH),
     ("TRIANGLE_HAS_HOLES", triangle_flag::HAS_HOLES),
     ("WRAP_REPEAT", texture_flag::WRAP_REPEAT),
@@ -549,6 +562,7 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("LIGHT_SURFACE", light_kind::SURFACE),
     ("LIGHT_DISTANT", light_kind::DISTANT),
     ("LIGHT_ENVIRONMENT", light_kind::ENVIRONMENT),
+    ("LIGHT_GROUP_SHIFT", light_kind::GROUP_SHIFT),
     ("LAYER_EMISSION", light_layer::EMISSION),
     ("LAYER_DIRECT", light_layer::DIRECT),
     ("LAYER_CAUSTIC", light_layer::CAUSTIC),

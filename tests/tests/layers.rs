@@ -1,7 +1,7 @@
 //! The layers of the picture: each against what it must hold, and their sum against the picture.
 
 use diacaustic::{FARTHEST_DEPTH, Film, LayerImage, LayerValues};
-use diacaustic_scene::{Layer, Scene};
+use diacaustic_scene::{Layer, LightKind, Scene};
 use diacaustic_tests::{emit, render, scene};
 use glam::{DVec3, Vec3};
 
@@ -51,6 +51,16 @@ fn picture(film: &Film) -> Vec<Vec3> {
 
 fn with_all_layers(mut scene: Scene) -> Scene {
     scene.output.layers = Layer::ALL.to_vec();
+    scene
+}
+
+/// A scene in which a lamp, a panel and a sign have groups of their own, and the sun has none.
+fn grouped(mut scene: Scene) -> Scene {
+    for (light, group) in scene.lights.iter_mut().zip([Some("key"), Some("fill"), None]) {
+        light.group = group.map(str::to_owned);
+    }
+    let sign = scene.materials.iter_mut().find(|material| material.name == "sign").unwrap();
+    sign.group = Some("sign".to_owned());
     scene
 }
 
@@ -325,4 +335,85 @@ fn restarting_forgets_the_layers() {
         renderer.emit_photons(0..scene.settings.photons).unwrap();
     }
     assert_eq!(layers[0], layers[1]);
+}
+
+#[test]
+fn light_groups_sum_to_the_picture_and_change_none_of_its_bits() {
+    let plain = variety("max_bounces = 3");
+    let rendered = Rendered::of(&with_all_layers(grouped(plain.clone())));
+    assert_eq!(rendered.film, render(&plain));
+    let lights = ["light_key", "light_fill", "light_default", "light_sign", "light_background"];
+    assert_close(&sum_of(&rendered, &lights), &picture(&rendered.film), 1e-5, "the sum of the groups");
+    let caustics = ["caustic_key", "caustic_fill", "caustic_default", "caustic_sign"];
+    assert_close(&sum_of(&rendered, &caustics), &rendered.vectors("caustic"), 1e-5, "the sum of the groups' caustics");
+    for name in lights.into_iter().chain(caustics) {
+        let lit = rendered.vectors(name).iter().filter(|value| value.max_element() > 1e-4).count();
+        assert!(lit > 10, "{name}: {lit} pixels");
+    }
+    let group_layers =
+        rendered.layers.iter().filter(|layer| layer.name.contains("light_") || layer.name.contains("caustic_"));
+    assert_eq!(group_layers.count(), 9);
+}
+
+#[test]
+fn energy_maps_hold_all_groups_to_the_bit() {
+    let plain = variety("guiding = false");
+    let (together, apart) = (emit(&plain, 20_000), emit(&with_all_layers(grouped(plain.clone())), 20_000));
+    let floor = plain.objects.len() - 1;
+    let map = together.energy_map(floor).unwrap().unwrap();
+    assert!(map.sums.iter().flatten().any(|sum| *sum > 0));
+    assert_eq!(map, apart.energy_map(floor).unwrap().unwrap());
+}
+
+#[test]
+fn one_group_has_no_layers_of_its_own() {
+    let rendered = Rendered::of(&with_all_layers(card("samples = 1, photons = 0")));
+    assert_eq!(rendered.layers.len(), Layer::ALL.len() - 1);
+}
+
+/// Pixels' means over renders with several seeds from `first` on, and the variances of these means, of what `value` makes of each render.
+fn over_seeds(scene: &Scene, first: u32, value: impl Fn(&Rendered) -> Vec<Vec3>) -> Vec<(DVec3, DVec3)> {
+    const SEEDS: u32 = 16;
+    let mut sums = vec![(DVec3::ZERO, DVec3::ZERO); (scene.settings.width * scene.settings.height) as usize];
+    for seed in first..first + SEEDS {
+        let mut scene = scene.clone();
+        scene.settings.seed = seed;
+        for ((sum, squares), value) in sums.iter_mut().zip(value(&Rendered::of(&scene))) {
+            *sum += value.as_dvec3();
+            *squares += value.as_dvec3().powf(2.0);
+        }
+    }
+    let n = f64::from(SEEDS);
+    sums.into_iter().map(|(sum, squares)| (sum / n, (squares - sum * sum / n) / (n * (n - 1.0)))).collect()
+}
+
+#[test]
+fn a_group_taken_away_is_a_light_turned_off() {
+    let mut scene = grouped(variety("max_bounces = 2"));
+    scene.settings.width = 16;
+    scene.settings.height = 12;
+    scene.output.layers = vec![Layer::LightGroups];
+    let taken_away = over_seeds(&scene, 0, |rendered| {
+        let own = rendered.vectors("light_key");
+        picture(&rendered.film).into_iter().zip(own).map(|(all, own)| all - own).collect()
+    });
+    scene.output.layers = Vec::new();
+    let LightKind::Sphere { flux, .. } = &mut scene.lights[0].kind else { panic!("the key light is a sphere") };
+    // Not 0, for a dark sphere would block no light.
+    *flux *= 1e-6;
+    let turned_off = over_seeds(&scene, 1000, |rendered| picture(&rendered.film));
+    let z: Vec<f64> = taken_away
+        .iter()
+        .zip(&turned_off)
+        .flat_map(|((a, var_a), (b, var_b))| ((a - b) / (var_a + var_b).max(DVec3::splat(1e-12)).powf(0.5)).to_array())
+        .collect();
+    let mean_square = z.iter().map(|z| z * z).sum::<f64>() / z.len() as f64;
+    let mean = z.iter().sum::<f64>() / z.len() as f64;
+    assert!((0.5..1.5).contains(&mean_square), "mean of z²: {mean_square}");
+    assert!(mean.abs() < 0.25, "mean of z: {mean}");
+    assert!(
+        z.iter().all(|z| z.abs() < 6.0),
+        "largest z: {:?}",
+        z.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()))
+    );
 }

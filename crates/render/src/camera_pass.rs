@@ -1,6 +1,6 @@
 //! Phase 2: samples of the picture.
 
-use diacaustic_scene::{RenderSettings, Scene};
+use diacaustic_scene::{LightGroups, RenderSettings, Scene};
 use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
 
 use crate::{
@@ -16,8 +16,14 @@ use crate::{
 
 /// The bindings of `shaders/layout/camera_pass.wgsl`.
 const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 5] =
-    [Binding::Texels, Binding::ReadWrite, Binding::ReadWrite, Binding::ReadWrite, Binding::ReadWrite];
+const OUTPUTS: [Binding; 6] = [
+    Binding::Texels,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+    Binding::ReadWrite,
+];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
 const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
 /// Paths along each side of the picture that note what they see.
@@ -70,7 +76,7 @@ impl Samples {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
-        let layers = LayerSums::new(gpu, &scene.output.layers, pixels)?;
+        let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
@@ -103,7 +109,7 @@ impl Samples {
         let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
-        let no_layers = LayerSums::new(gpu, &[], paths)?;
+        let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
         let outputs = outputs_group(gpu, pass, maps, &film, &no_layers, &sightings);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
@@ -113,8 +119,8 @@ impl Samples {
     }
 
     /// What samples accumulate in.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 3] {
-        [&self.film, &self.layers.light, &self.layers.data]
+    pub fn buffers(&self) -> [&wgpu::Buffer; 4] {
+        [&self.film, &self.layers.light, &self.layers.data, &self.layers.groups]
     }
 
     /// Bytes on the device.
@@ -170,7 +176,8 @@ fn outputs_group(
     sightings: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
     let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
-    let buffers = [film, sightings, &layers.light, &layers.data].map(|buffer| buffer.as_entire_binding());
+    let buffers =
+        [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
     gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
 }
 

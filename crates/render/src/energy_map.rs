@@ -12,10 +12,14 @@ use crate::{
 
 /// Bytes of a texel's three 64-bit sums.
 const TEXEL_BYTES: u64 = 24;
+/// Texels in whose multiples the maps of light groups begin: where a device can bind a part of a buffer.
+const GROUP_ALIGNMENT: u64 = 32;
 /// Texels along the longer side of a map whose size nobody chose: at least, at most.
 const DEFAULT_SIZES: std::ops::RangeInclusive<f32> = 16.0..=2048.0;
 
 const SUMS: Purpose = Purpose { what: "the energy maps", remedy: "lower map_size" };
+const GROUP_SUMS: Purpose =
+    Purpose { what: "the energy maps of all light groups", remedy: "lower map_size, or keep fewer light groups apart" };
 const AREAS: Purpose = Purpose { what: "the texels' areas", remedy: "lower map_size" };
 const IRRADIANCE: Purpose = Purpose { what: "the texels' irradiance", remedy: "lower map_size" };
 
@@ -115,6 +119,8 @@ pub(crate) struct EnergyMaps {
     pub irradiance: wgpu::TextureView,
     pub bytes: u64,
     texel_count: u64,
+    /// Light groups that have maps of their own.
+    groups: u64,
     params: wgpu::Buffer,
     bind_group: wgpu::BindGroup,
 }
@@ -142,7 +148,9 @@ impl ResolvePass {
             watts_per_unit: (1.0 / (f64::from(units_per_watt) * photons.max(1) as f64)) as f32,
             texel_count: maps.texel_count as u32,
             groups_x,
-            padding: 0,
+            light_groups: maps.groups as u32,
+            group_texels: maps.group_texels() as u32,
+            ..Default::default()
         };
         gpu.queue.write_buffer(&maps.params, 0, bytemuck::bytes_of(&params));
         gpu.dispatch(&self.pipeline, &[&maps.bind_group], [groups_x, groups.div_ceil(groups_x)]);
@@ -150,26 +158,49 @@ impl ResolvePass {
 }
 
 impl EnergyMaps {
-    pub fn new(gpu: &Gpu, pass: &ResolvePass, placements: Vec<Option<MapPlacement>>) -> Result<Self, Error> {
+    /// Maps for each of `groups` light groups, one after the other.
+    pub fn new(
+        gpu: &Gpu,
+        pass: &ResolvePass,
+        placements: Vec<Option<MapPlacement>>,
+        groups: usize,
+    ) -> Result<Self, Error> {
+        let groups = groups as u64;
+        let purpose = if groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.layout.texel_count()).sum();
-        gpu.check_size(SUMS, texel_count * TEXEL_BYTES)?;
+        let sums_bytes = groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * TEXEL_BYTES;
+        gpu.check_size(purpose, sums_bytes)?;
         let areas: Vec<f32> = placements
             .iter()
             .flatten()
             .flat_map(|map| std::iter::repeat_n(&map.areas, map.layout.layers as usize).flatten())
             .map(|&area| area as f32)
             .collect();
-        let sums = gpu.zeroed(SUMS, texel_count * TEXEL_BYTES)?;
+        let sums = gpu.zeroed(purpose, sums_bytes)?;
         let areas = gpu.filled(AREAS, &areas)?;
+        // With several groups, all light's irradiance stands beside theirs.
+        let entries = if groups > 1 { 1 + groups } else { 1 };
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture = gpu.texels(IRRADIANCE, wgpu::TextureFormat::Rgba32Float, usage, texel_count)?;
+        let texture = gpu.texels(IRRADIANCE, wgpu::TextureFormat::Rgba32Float, usage, entries * texel_count)?;
         let irradiance = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let params = gpu.uniform::<ResolveParams>("resolve");
         let mut resources: Vec<_> = [&params, &sums, &areas].map(|buffer| buffer.as_entire_binding()).into();
         resources.push(wgpu::BindingResource::TextureView(&irradiance));
         let bind_group = gpu.bind_resources(&pass.layout, resources);
         let bytes = sums.size() + areas.size() + texture_bytes(&texture);
-        Ok(Self { placements, sums, irradiance, bytes, texel_count, params, bind_group })
+        Ok(Self { placements, sums, irradiance, bytes, texel_count, groups, params, bind_group })
+    }
+
+    /// Texels from a light group's maps to the next one's.
+    fn group_texels(&self) -> u64 {
+        self.texel_count.next_multiple_of(GROUP_ALIGNMENT)
+    }
+
+    /// The sums of a light group.
+    pub fn sums_of(&self, group: usize) -> wgpu::BindingResource<'_> {
+        let bytes = self.group_texels() * TEXEL_BYTES;
+        let size = std::num::NonZero::new(bytes);
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer: &self.sums, offset: group as u64 * bytes, size })
     }
 
     /// Reads one object's map. Blocks.
@@ -182,14 +213,19 @@ impl EnergyMaps {
     ) -> Result<Option<EnergyMap>, Error> {
         let Some(placement) = &self.placements[object] else { return Ok(None) };
         let count = placement.layout.texel_count();
-        let first = 3 * placement.first_texel;
-        let words: Vec<[u32; 2]> = gpu.read(&self.sums, first..first + 3 * count)?;
-        let sum = |words| wide(words) as i64;
+        let mut sums = vec![[0i64; 3]; count as usize];
+        for group in 0..self.groups {
+            let first = 3 * (group * self.group_texels() + placement.first_texel);
+            let words: Vec<[u32; 2]> = gpu.read(&self.sums, first..first + 3 * count)?;
+            for (sum, words) in sums.iter_mut().flatten().zip(words) {
+                *sum = sum.wrapping_add(wide(words) as i64);
+            }
+        }
         Ok(Some(EnergyMap {
             width: placement.layout.width,
             height: placement.layout.height,
             layers: placement.layout.layers,
-            sums: words.chunks_exact(3).map(|texel| [sum(texel[0]), sum(texel[1]), sum(texel[2])]).collect(),
+            sums,
             areas: placement.areas.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,

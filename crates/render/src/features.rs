@@ -7,7 +7,7 @@ use diacaustic_shaders::{Kernel, light_kind};
 
 use crate::{
     gpu::Gpu,
-    layers::{has_data_layers, has_light_layers},
+    layers::{has_data_layers, has_light_layers, kept_group_count},
     lights::Lights,
 };
 
@@ -44,6 +44,8 @@ pub(crate) struct Features {
     light_layers: bool,
     /// What pixels show, and how much their samples vary.
     data_layers: bool,
+    /// Light groups that are kept apart.
+    light_groups: u32,
 }
 
 impl Features {
@@ -66,6 +68,7 @@ impl Features {
             sightings: false,
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
+            light_groups: kept_group_count(&lights.groups) as u32,
         }
     }
 
@@ -79,7 +82,7 @@ impl Features {
 
     /// The same for camera paths that note what they see of the energy maps.
     pub fn with_sightings(self) -> Self {
-        Self { sightings: true, light_layers: false, data_layers: false, ..self }
+        Self { sightings: true, light_layers: false, data_layers: false, light_groups: 0, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -100,6 +103,7 @@ impl Features {
             ("notes_sightings", f64::from(self.sightings)),
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),
+            ("light_group_count", f64::from(self.light_groups)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }

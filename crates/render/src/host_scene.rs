@@ -11,6 +11,7 @@ use crate::{
     Error,
     energy_map::{MapPlacement, place_maps},
     features::Features,
+    layers::kept_groups,
     lights::Lights,
 };
 
@@ -44,6 +45,8 @@ impl HostScene {
         let bvh_time = start.elapsed();
 
         let start = Instant::now();
+        // Each light group has maps of its own.
+        let map_budget = map_budget / kept_groups(scene).names.len() as u64;
         let placements = place_maps(scene, &triangles[..of_objects], map_budget);
         let maps_time = start.elapsed();
 

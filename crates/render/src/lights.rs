@@ -2,13 +2,13 @@
 
 use std::f32::consts::PI;
 
-use diacaustic_scene::{Light, LightKind, Material, MaterialKind, RadianceMap, Scene};
+use diacaustic_scene::{Light, LightGroups, LightKind, Material, MaterialKind, RadianceMap, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::light_kind;
 use diacaustic_surface::{BoundingSphere, WorldTriangle};
 use glam::{DVec3, Vec2, Vec3};
 
-use crate::environment::EnvironmentRecord;
+use crate::{environment::EnvironmentRecord, layers::kept_groups};
 
 /// The share of next-event estimation that goes to the lights in proportion to the irradiance that they may give what the camera looks at;
 /// the rest goes to all evenly, so that a lamp that is weak there is not forgotten where it is strong.
@@ -21,6 +21,8 @@ pub(crate) struct Emitter {
     pub number: usize,
     /// Its place on the device.
     pub index: usize,
+    /// Its light group.
+    pub group: usize,
     /// Turns in which it sends photons.
     pub photon_share: u32,
     /// Radiant flux, W; of light from infinitely far, what enters the sphere around the scene.
@@ -66,6 +68,8 @@ pub(crate) struct Lights {
     pub first_sky: usize,
     /// Lights of the scene and emissive materials.
     pub account_count: usize,
+    /// The groups that are kept apart; a single one of all lights where none are.
+    pub groups: LightGroups,
 }
 
 /// An emitter before it has a place on the device.
@@ -86,6 +90,7 @@ impl Lights {
             sphere_count: 0,
             first_sky: 0,
             account_count: 0,
+            groups: kept_groups(scene),
         };
         let shining = scene.lights.iter().enumerate().filter(|(_, light)| !light.kind.is_dark());
         let mut candidates: Vec<Candidate> =
@@ -95,7 +100,8 @@ impl Lights {
             let number = lights.account_count;
             lights.account_count += 1;
             let strength = scene.materials[material].emission;
-            candidates.push(Candidate { emitter: emissive_surface(number, strength), material: Some(material) });
+            let group = lights.groups.of_materials[material];
+            candidates.push(Candidate { emitter: emissive_surface(number, group, strength), material: Some(material) });
         }
         for candidate in candidates.iter_mut().filter(|candidate| candidate.material.is_some()) {
             lights.gather_surface(scene, candidate, triangles);
@@ -110,6 +116,7 @@ impl Lights {
         let emitter = Emitter {
             number,
             index: 0,
+            group: self.groups.of_lights[number],
             photon_share: light.photon_share,
             flux: Vec3::ZERO,
             bounds: None,
@@ -191,7 +198,8 @@ impl Lights {
             emitter.index = index;
             before += BY_IRRADIANCE * emitter.irradiance_at(seen, around) / total + (1.0 - BY_IRRADIANCE) * even;
             emitter.record.cumulative_probability = if index + 1 == last { 1.0 } else { before };
-            self.records.push(emitter.record);
+            let kind = emitter.kind() | (emitter.group as u32) << light_kind::GROUP_SHIFT;
+            self.records.push(shaders::Light { kind, ..emitter.record });
         }
         // By account, so that photons take turns in the order of docs/photon-paths.md.
         self.emitters.sort_by_key(|emitter| emitter.number);
@@ -241,18 +249,18 @@ fn emission_factor(material: &Material, uv: Vec2) -> Vec3 {
 
 /// The materials that shine and that an object shows, with the names of their emitters.
 pub(crate) fn emissive_materials(scene: &Scene) -> Vec<(usize, String)> {
-    let is_shown = |index: usize| scene.objects.iter().any(|object| object.materials.contains(&index));
     let materials = scene.materials.iter().enumerate();
     materials
-        .filter(|(index, material)| material.is_emissive() && is_shown(*index))
+        .filter(|(index, material)| material.is_emissive() && scene.shows(*index))
         .map(|(index, material)| (index, format!("material {}", material.name)))
         .collect()
 }
 
-fn emissive_surface(number: usize, strength: Vec3) -> Emitter {
+fn emissive_surface(number: usize, group: usize, strength: Vec3) -> Emitter {
     Emitter {
         number,
         index: 0,
+        group,
         photon_share: 1,
         flux: Vec3::ZERO,
         bounds: None,

@@ -102,7 +102,8 @@ pub(crate) struct Photons {
     greatest_weight: f32,
     params: wgpu::Buffer,
     pub ledger: wgpu::Buffer,
-    outputs_group: wgpu::BindGroup,
+    /// For each light group, what its photons write.
+    outputs_groups: Vec<wgpu::BindGroup>,
 }
 
 /// What photons need to know of a scene.
@@ -164,7 +165,9 @@ impl Photons {
             photons_per_invocation: loop_limit.photons_per_invocation(scene.settings),
             guided,
             units_per_watt,
-            outputs_group: gpu.bind(&pass.outputs_layout, &[&maps.sums, &ledger, &no_landings]),
+            outputs_groups: (0..scene.lights.groups.names.len())
+                .map(|group| outputs_group(gpu, pass, maps, group, &ledger, &no_landings))
+                .collect(),
             params,
             ledger,
         })
@@ -197,7 +200,7 @@ impl Photons {
     ) -> Result<PilotReport, Error> {
         let count = 1u32 << pilot_round(self.lights.len());
         let landings = gpu.zeroed(LANDINGS, u64::from(count) * PILOT_ROUNDS as u64 * size_of::<Landing>() as u64)?;
-        let outputs = gpu.bind(&pass.outputs_layout, &[&maps.sums, &self.ledger, &landings]);
+        let outputs = outputs_group(gpu, pass, maps, 0, &self.ledger, &landings);
         let mut pilot = Pilot::new(&maps.placements, sightings);
         let mut flights = vec![Vec::new(); self.lights.len()];
         for round in 0..PILOT_ROUNDS as u32 {
@@ -236,7 +239,8 @@ impl Photons {
         let mut submitted = 0u32;
         for light in &self.lights {
             for block in blocks(light.of_first(range.start, self.turns), light.of_first(range.end, self.turns)) {
-                self.submit(gpu, scene_group, &self.outputs_group, light, &self.block_params(light, &block));
+                let outputs = &self.outputs_groups[light.emitter.group];
+                self.submit(gpu, scene_group, outputs, light, &self.block_params(light, &block));
                 submitted += 1;
                 if submitted.is_multiple_of(MOST_IN_FLIGHT) {
                     gpu.wait()?;
@@ -324,6 +328,19 @@ impl Photons {
             units_per_watt: f64::from(self.units_per_watt),
         }
     }
+}
+
+/// The energy maps of a light group, the ledger and what a pilot notes.
+fn outputs_group(
+    gpu: &Gpu,
+    pass: &PhotonPass,
+    maps: &EnergyMaps,
+    group: usize,
+    ledger: &wgpu::Buffer,
+    landings: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    let resources = vec![maps.sums_of(group), ledger.as_entire_binding(), landings.as_entire_binding()];
+    gpu.bind_resources(&pass.outputs_layout, resources)
 }
 
 /// The inverse of a light's share of all photons.

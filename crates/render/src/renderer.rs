@@ -141,7 +141,7 @@ impl Renderer {
             casters: &host.casters,
             around: host.around,
         };
-        let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements)?;
+        let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements, host.lights.groups.names.len())?;
         let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?;
         let samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?;
         let mut pilot = None;

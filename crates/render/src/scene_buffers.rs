@@ -2,7 +2,7 @@
 
 use diacaustic_scene::{LightKind, Material, Scene};
 use diacaustic_shaders as shaders;
-use diacaustic_shaders::triangle_flag;
+use diacaustic_shaders::{material_kind, triangle_flag};
 use diacaustic_surface::WorldTriangle;
 use glam::Vec2;
 
@@ -57,6 +57,7 @@ impl SceneBuffers {
         let mut materials: Vec<_> = (0..scene.materials.len()).map(|index| material(scene, index)).collect();
         for (order, (index, _)) in emissive_materials(scene).into_iter().enumerate() {
             materials[index].emission_pdf_area = lights.pdf_area(scene.lights.len() + order);
+            materials[index].kind |= (lights.groups.of_materials[index] as u32) << material_kind::GROUP_SHIFT;
         }
         let surfaces = scene.lights.iter().enumerate();
         materials.extend(surfaces.map(|(number, light)| light_surface(lights, number, &light.kind)));
@@ -122,7 +123,8 @@ fn object(map: &Option<MapPlacement>) -> shaders::Object {
 
 /// The surface of a light: black, and it shines.
 fn light_surface(lights: &Lights, number: usize, kind: &LightKind) -> shaders::Material {
-    let blank = shaders::Material { tint: [1.0; 3], ior: 1.0, ..Default::default() };
+    let group = (lights.groups.of_lights[number] as u32) << material_kind::GROUP_SHIFT;
+    let blank = shaders::Material { tint: [1.0; 3], ior: 1.0, kind: group, ..Default::default() };
     match kind {
         LightKind::Rectangle { .. } | LightKind::Disk { .. } => {
             shaders::Material { emission: kind.strength().into(), emission_pdf_area: lights.pdf_area(number), ..blank }

@@ -11,6 +11,8 @@ pub enum Layer {
     Caustic,
     /// Light after it was reflected by two receivers or more.
     Indirect,
+    /// All light, and the caustic, of each group of lights, if there are several: layers `light_NAME` and `caustic_NAME`.
+    LightGroups,
     /// Share of the light that the first surface sends on.
     Albedo,
     /// Shading normal of the first surface.
@@ -31,11 +33,12 @@ pub enum Layer {
 
 impl Layer {
     /// Every layer, in the order of files.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Emission,
         Self::Direct,
         Self::Caustic,
         Self::Indirect,
+        Self::LightGroups,
         Self::Albedo,
         Self::Normal,
         Self::Depth,
@@ -46,13 +49,14 @@ impl Layer {
         Self::Variance,
     ];
 
-    /// Its name in scene files and in OpenEXR.
+    /// Its name in scene files and, but for those of [`Layer::LightGroups`], in OpenEXR.
     pub fn name(self) -> &'static str {
         match self {
             Self::Emission => "emission",
             Self::Direct => "direct",
             Self::Caustic => "caustic",
             Self::Indirect => "indirect",
+            Self::LightGroups => "light_groups",
             Self::Albedo => "albedo",
             Self::Normal => "normal",
             Self::Depth => "depth",

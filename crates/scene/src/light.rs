@@ -15,6 +15,8 @@ pub struct Light {
     pub kind: LightKind,
     /// Its share of all photons, against the sum of the shares of all lights; 1 to 1000. It changes noise, not brightness.
     pub photon_share: u32,
+    /// The group of lights in whose layers its light is kept; that of all lights that name none, if none.
+    pub group: Option<String>,
 }
 
 /// The shapes of emitters. Angles are degrees; `flux` is radiant flux Φ, W per channel, ≥ 0.

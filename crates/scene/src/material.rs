@@ -14,6 +14,8 @@ pub struct Material {
     /// Radiance that the surface's front sends in each direction (Lambertian), W/(m² sr) per channel, ≥ 0. Dielectrics and
     /// thin-walled glass have none.
     pub emission: Vec3,
+    /// The group of lights in whose layers its emission is kept; that of all lights that name none, if none.
+    pub group: Option<String>,
     /// Share of the light that meets the surface at all, 0 to 1; the rest passes as if it were not there. 1 for dielectrics.
     pub opacity: f32,
     /// Where set, opacity is 1 where it is at least this great, else 0.
@@ -110,7 +112,15 @@ impl Material {
     /// A material that neither shines nor shows pictures.
     pub fn new(name: impl Into<String>, kind: MaterialKind) -> Self {
         let textures = Textures::default();
-        Self { name: name.into(), kind, emission: Vec3::ZERO, opacity: 1.0, opacity_cutoff: None, textures }
+        Self {
+            name: name.into(),
+            kind,
+            emission: Vec3::ZERO,
+            group: None,
+            opacity: 1.0,
+            opacity_cutoff: None,
+            textures,
+        }
     }
 
     /// Whether the material passes light on along one direction or a narrow lobe: a *caster*, whose light the energy maps own.

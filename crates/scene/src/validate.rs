@@ -42,6 +42,7 @@ impl Scene {
         check_output(&self.output)?;
         self.check_materials()?;
         self.check_lights()?;
+        self.check_light_groups()?;
         self.check_objects()?;
         let mut warnings = self.caustic_warnings();
         for object in &self.objects {

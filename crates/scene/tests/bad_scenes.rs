@@ -270,7 +270,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "exposure = 0.5",
         r#"layers = ["albedo", "difuse"]"#,
-        r#"x.toml:21:21: [output]: layers[1]: there is no layer "difuse"; known names: emission, direct, caustic, indirect, albedo, normal, depth, position, object_id, material_id, samples, variance"#,
+        r#"x.toml:21:21: [output]: layers[1]: there is no layer "difuse"; known names: emission, direct, caustic, indirect, light_groups, albedo, normal, depth, position, object_id, material_id, samples, variance"#,
     ),
     (
         "exposure = 0.5",
@@ -341,7 +341,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "albedo = 0.8",
         "albedo = 0.8\nior = 1.5",
-        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo, emission, normal, opacity"#,
+        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo, emission, normal, opacity, group"#,
     ),
     (
         "albedo = 0.8",
@@ -377,7 +377,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "flux = [35, 35, 35]",
         "power = 35",
-        r#"x.toml:45:1: [[lights]] #1: unknown key "power"; known keys: type, name, photon_share, center, radius, flux"#,
+        r#"x.toml:45:1: [[lights]] #1: unknown key "power"; known keys: type, name, photon_share, group, center, radius, flux"#,
     ),
     (
         "center = [1, 2.5, 0.6]",

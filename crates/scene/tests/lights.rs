@@ -72,8 +72,8 @@ fn every_type_is_read_with_all_keys() {
         ),
     ];
     for (keys, kind) in cases {
-        let read = light(&format!("{keys}\nflux = [4, 5, 6]\nname = 'lamp'\nphoton_share = 7"));
-        assert_eq!(read, Light { name: "lamp".to_owned(), kind, photon_share: 7 });
+        let read = light(&format!("{keys}\nflux = [4, 5, 6]\nname = 'lamp'\nphoton_share = 7\ngroup = 'key'"));
+        assert_eq!(read, Light { name: "lamp".to_owned(), kind, photon_share: 7, group: Some("key".to_owned()) });
     }
 }
 
@@ -86,7 +86,7 @@ fn light_from_afar_is_read() {
     };
     let keys = "direction = [1, -2, 0]\nirradiance = [3, 2, 1]";
     let parallel = light(&format!("type = 'directional'\n{keys}"));
-    assert_eq!(parallel, Light { name: "light 1".to_owned(), kind: distant(0.0), photon_share: 1 });
+    assert_eq!(parallel, Light { name: "light 1".to_owned(), kind: distant(0.0), photon_share: 1, group: None });
     assert_eq!(light(&format!("type = 'sun'\n{keys}")).kind, distant(0.2666));
     assert_eq!(light(&format!("type = 'sun'\n{keys}\nangular_radius = 5")).kind, distant(5.0));
 }
@@ -107,11 +107,19 @@ fn faults_are_named() {
         ),
         (
             format!("{sphere}\nirradiance = 1"),
-            "[[lights]] #1: unknown key \"irradiance\"; known keys: type, name, photon_share, center, radius, flux",
+            "[[lights]] #1: unknown key \"irradiance\"; known keys: type, name, photon_share, group, center, radius, flux",
         ),
         (
             format!("{sphere}\nphoton_share = 1001"),
             r#"light "light 1": photon_share is 1001; it must be from 1 to 1000"#,
+        ),
+        (
+            format!("{sphere}\ngroup = 'key.1'"),
+            r#"light "light 1": group is "key.1"; it must be of the letters a to z and A to Z, digits, _ and -, for layers are named after it"#,
+        ),
+        (
+            format!("{sphere}\ngroup = 'background'"),
+            r#"light "light 1": group is "background", which is the name of what no light sends; it must be another"#,
         ),
         (
             format!("{sphere}\nphoton_share = 0.5"),
@@ -145,7 +153,7 @@ fn faults_are_named() {
         ),
         (
             "type = 'directional'\ndirection = [0, -1, 0]\nirradiance = 1\nangular_radius = 1".to_owned(),
-            "[[lights]] #1: unknown key \"angular_radius\"; known keys: type, name, photon_share, direction, irradiance",
+            "[[lights]] #1: unknown key \"angular_radius\"; known keys: type, name, photon_share, group, direction, irradiance",
         ),
         (
             "type = 'environment'".to_owned(),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use diacaustic_scene::{
-    Camera, Chart, Dispersion, Error, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings,
+    Camera, Chart, Dispersion, Error, Layer, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings,
     RadianceMap, RenderSettings, Scene, Subject, Warning,
 };
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
@@ -48,6 +48,7 @@ fn scene() -> Scene {
         lights: vec![Light {
             name: "lamp".to_owned(),
             photon_share: 1,
+            group: None,
             kind: LightKind::Sphere { center: Vec3::new(1.0, 2.5, 0.6), radius: 0.05, flux: Vec3::splat(35.0) },
         }],
         materials: vec![material("glass", glass), material("plaster", plaster)],
@@ -310,13 +311,50 @@ fn environments_are_checked() {
     for (kind, message) in cases {
         assert_eq!(light_error(kind), message);
     }
-    let sky =
-        |name: &str| Light { name: name.to_owned(), kind: environment(gray.clone(), 0.0, Vec3::ONE), photon_share: 1 };
+    let sky = |name: &str| Light {
+        name: name.to_owned(),
+        kind: environment(gray.clone(), 0.0, Vec3::ONE),
+        photon_share: 1,
+        group: None,
+    };
     assert_eq!(warnings(|s| s.lights = vec![sky("sky")]), []);
     assert_eq!(
         error(|s| s.lights = vec![sky("sky"), sky("clouds")]),
         "light \"clouds\": type is environment, as that of \"sky\" is; a scene has one at most"
     );
+}
+
+#[test]
+fn layers_keep_eight_light_groups_at_most() {
+    let lamp = scene().lights[0].clone();
+    let lights = |count: usize| -> Vec<Light> {
+        let names = (1..=count).map(|number| number.to_string());
+        names.map(|name| Light { group: Some(name.clone()), name, ..lamp.clone() }).collect()
+    };
+    assert_eq!(warnings(|s| s.lights = lights(9)), []);
+    let with_layers = |s: &mut Scene, count| (s.lights, s.output.layers) = (lights(count), Layer::ALL.to_vec());
+    assert_eq!(warnings(|s| with_layers(s, 8)), []);
+    assert_eq!(
+        error(|s| with_layers(s, 9)),
+        "output: layers asks for those of 9 light groups; there can be 8 at most: give lights the same group, or name layers without \
+         \"light_groups\""
+    );
+}
+
+#[test]
+fn light_groups_are_in_the_order_of_the_scene() {
+    let mut scene = scene();
+    let group = |name: &str| Some(name.to_owned());
+    scene.lights = vec![scene.lights[0].clone(); 4];
+    for (light, name) in scene.lights.iter_mut().zip([group("b"), None, group("a"), group("b")]) {
+        light.group = name;
+    }
+    scene.materials[1].group = group("sign");
+    assert_eq!(scene.light_groups().names, ["b", "default", "a"]);
+    scene.materials[1].emission = Vec3::ONE;
+    let groups = scene.light_groups();
+    assert_eq!(groups.names, ["b", "default", "a", "sign"]);
+    assert_eq!((groups.of_lights, groups.of_materials), (vec![0, 1, 2, 0], vec![0, 3]));
 }
 
 #[test]

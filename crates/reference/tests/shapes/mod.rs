@@ -108,7 +108,7 @@ pub fn light(center: Vec3, radius: f32, flux: f32) -> Light {
 
 /// A light of a kind.
 pub fn named(kind: LightKind) -> Light {
-    Light { name: "light".into(), kind, photon_share: 1 }
+    Light { name: "light".into(), kind, photon_share: 1, group: None }
 }
 
 /// A scene of meshes, each with its material and its place, in front of a black background.

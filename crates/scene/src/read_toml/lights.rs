@@ -78,12 +78,13 @@ impl<'a> LightReader<'a> {
     fn read(&mut self, index: usize, table: &Table<'_>) -> Result<Light, Error> {
         let expected = "the name of a light type, such as \"sphere\"";
         let light_type = table.require("type", expected)?.choice("light type", &LightType::NAMES)?;
-        table.allow_only(&[&["type", "name", "photon_share"], light_type.keys()].concat())?;
+        table.allow_only(&[&["type", "name", "photon_share", "group"], light_type.keys()].concat())?;
         let name = table.get("name").map(|entry| entry.string("a string")).transpose()?;
         Ok(Light {
             name: name.map_or_else(|| format!("light {}", index + 1), str::to_owned),
             kind: self.read_kind(light_type, table)?,
             photon_share: table.get("photon_share").map_or(Ok(1), |entry| entry.whole32())?,
+            group: read_group(table)?,
         })
     }
 
@@ -140,6 +141,12 @@ impl<'a> LightReader<'a> {
         self.images.insert(path, Arc::clone(&map));
         Ok(map)
     }
+}
+
+/// The name of a light group, if one is stated.
+pub(super) fn read_group(table: &Table<'_>) -> Result<Option<String>, Error> {
+    let name = table.get("group").map(|entry| entry.string("the name of a light group")).transpose()?;
+    Ok(name.map(str::to_owned))
 }
 
 fn read_spot(table: &Table<'_>) -> Result<LightKind, Error> {

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{
+    lights::read_group,
     refraction::{self, Refraction, read_refraction, read_substance},
     table::Table,
     textures::{DefaultChannel, Opacity, TextureReader},
@@ -78,7 +79,8 @@ impl MaterialType {
             ));
         }
         let (with_picture, without) = self.keys();
-        table.allow_only(&[&["type"], with_picture, without].concat())?;
+        let group: &[&str] = if is_glass { &[] } else { &["group"] };
+        table.allow_only(&[&["type"], with_picture, without, group].concat())?;
         for entry in without.iter().filter_map(|key| table.get(key)) {
             if entry.is_table_with("image") {
                 let others = with_picture.join(", ");
@@ -112,7 +114,8 @@ impl<'a> MaterialReader<'a> {
         let emission = keys.emission()?;
         let (opacity, opacity_cutoff) = keys.opacity()?;
         keys.textures.normal = table.get("normal").map(|entry| keys.reader.normal(&entry)).transpose()?;
-        Ok(Material { emission, opacity, opacity_cutoff, textures: keys.textures, ..Material::new(name, kind) })
+        let group = read_group(table)?;
+        Ok(Material { emission, group, opacity, opacity_cutoff, textures: keys.textures, ..Material::new(name, kind) })
     }
 }
 

@@ -5,7 +5,10 @@ use std::{collections::HashMap, ops::Bound};
 use glam::Vec3;
 
 use super::at::{At, above};
-use crate::{Error, Light, LightKind, RadianceMap, Scene, Subject, primitives::are_perpendicular};
+use crate::{
+    BACKGROUND_GROUP, Error, Layer, Light, LightKind, MOST_LIGHT_GROUPS, RadianceMap, Scene, Subject,
+    primitives::are_perpendicular,
+};
 
 impl Scene {
     pub(super) fn check_lights(&self) -> Result<(), Error> {
@@ -24,6 +27,37 @@ impl Scene {
         }
         Ok(())
     }
+
+    pub(super) fn check_light_groups(&self) -> Result<(), Error> {
+        for (index, light) in self.lights.iter().enumerate() {
+            check_group(&At(Subject::Light { index, name: light.name.clone() }), light.group.as_deref())?;
+        }
+        for (index, material) in self.materials.iter().enumerate() {
+            check_group(&At(Subject::Material { index, name: material.name.clone() }), material.group.as_deref())?;
+        }
+        let count = self.light_groups().names.len();
+        let is_kept = self.output.layers.contains(&Layer::LightGroups);
+        At(Subject::Output).require(!is_kept || count <= MOST_LIGHT_GROUPS, "layers", || {
+            format!(
+                "asks for those of {count} light groups; there can be {MOST_LIGHT_GROUPS} at most: give lights the same group, \
+                 or name layers without \"light_groups\""
+            )
+        })
+    }
+}
+
+/// Refuses names of groups that layers cannot be named after.
+fn check_group(at: &At, group: Option<&str>) -> Result<(), Error> {
+    let Some(name) = group else { return Ok(()) };
+    let is_plain = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c));
+    at.require(is_plain, "group", || {
+        format!(
+            "is {name:?}; it must be of the letters a to z and A to Z, digits, _ and -, for layers are named after it"
+        )
+    })?;
+    at.require(name != BACKGROUND_GROUP, "group", || {
+        format!("is {name:?}, which is the name of what no light sends; it must be another")
+    })
 }
 
 fn check_kind(at: &At, kind: &LightKind) -> Result<(), Error> {
