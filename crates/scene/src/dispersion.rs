@@ -64,7 +64,7 @@ mod tests {
 
     /// Schott's data sheet of N-BK7.
     const BK7: Dispersion = Dispersion::Sellmeier([
-        [1.039_612_1, 0.006_000_699],
+        [1.039_612, 0.006_000_699],
         [0.231_792_34, 0.020_017_914],
         [1.010_469_5, 103.560_65],
         [0.0, 0.0],

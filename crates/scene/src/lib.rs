@@ -45,6 +45,8 @@ mod camera;
 mod dispersion;
 mod environment_image;
 mod error;
+mod folder;
+mod gltf;
 mod light;
 mod material;
 mod media;
@@ -66,13 +68,15 @@ pub use camera::Camera;
 pub use dispersion::{Dispersion, STATED_WAVELENGTH};
 pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
+pub use folder::ReadOptions;
+pub use gltf::{GltfCamera, GltfFile, GltfObject, load_gltf, parse_gltf};
 pub use light::{Light, LightKind};
 pub use material::{GLOSSY, Material, MaterialKind, SMOOTH};
 pub use mesh::{Chart, Mesh};
 pub use metals::{METALS, Metal, metal};
 pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
-pub use read_toml::{LoadedScene, load_scene, parse_scene};
+pub use read_toml::{LoadedScene, load_scene, load_scene_with, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
 pub use spectrum::{
     LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,

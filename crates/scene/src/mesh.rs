@@ -2,6 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
+/// The square of the length below which a normal is taken for a missing one.
+const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
+
 /// An indexed triangle mesh in its object's frame, in metres.
 ///
 /// Triangles are counter-clockwise seen from outside. A vertex is a (position, normal, uv) triple: a position that
@@ -48,6 +51,37 @@ impl Mesh {
     pub fn double_area_normal(&self, triangle: usize) -> Vec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
+    }
+
+    /// Normalises the normals; corners without a usable one get a vertex of their own with the facet's normal.
+    /// Returns the number of those corners.
+    pub(crate) fn replace_unusable_normals(&mut self) -> usize {
+        let usable: Vec<_> =
+            self.normals.iter().map(|normal| normal.length_squared() > SHORTEST_NORMAL_SQUARED).collect();
+        let mut is_taken = usable.clone();
+        for normal in &mut self.normals {
+            *normal = normal.normalize_or(Vec3::Z);
+        }
+        let mut replaced = 0;
+        for triangle in 0..self.triangles.len() {
+            let facet = self.double_area_normal(triangle).normalize_or(Vec3::Z);
+            for corner in 0..3 {
+                let vertex = self.triangles[triangle][corner] as usize;
+                if usable.get(vertex).copied().unwrap_or(true) {
+                    continue;
+                }
+                replaced += 1;
+                if std::mem::replace(&mut is_taken[vertex], true) {
+                    self.triangles[triangle][corner] = self.positions.len() as u32;
+                    self.positions.push(self.positions[vertex]);
+                    self.uvs.extend(self.uvs.get(vertex).copied());
+                    self.normals.push(facet);
+                } else {
+                    self.normals[vertex] = facet;
+                }
+            }
+        }
+        replaced
     }
 
     /// The number of edges that do not join exactly two triangles of opposite direction, after welding vertices

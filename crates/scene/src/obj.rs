@@ -10,9 +10,6 @@ use glam::{Vec2, Vec3};
 use self::check::{Checked, check};
 use crate::{Chart, Error, Material, Mesh, Warning};
 
-/// The square of the length below which a normal is taken for a missing one.
-const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
-
 /// A mesh from an OBJ file, with what its material libraries say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjFile {
@@ -110,38 +107,8 @@ fn settle_optional_data(mesh: &mut Mesh, checked: &Checked, path: &Path, warning
         mesh.normals.clear();
         return;
     }
-    let replaced = replace_unusable_normals(mesh);
+    let replaced = mesh.replace_unusable_normals();
     if replaced > 0 {
         warnings.push(Warning::ReplacedNormals { path: path.to_owned(), count: replaced });
     }
-}
-
-/// Normalises the normals; corners without a usable one get a vertex of their own with the facet's normal.
-/// Returns the number of those corners.
-fn replace_unusable_normals(mesh: &mut Mesh) -> usize {
-    let usable: Vec<_> = mesh.normals.iter().map(|normal| normal.length_squared() > SHORTEST_NORMAL_SQUARED).collect();
-    let mut is_taken = usable.clone();
-    for normal in &mut mesh.normals {
-        *normal = normal.normalize_or(Vec3::Z);
-    }
-    let mut replaced = 0;
-    for triangle in 0..mesh.triangles.len() {
-        let facet = mesh.double_area_normal(triangle).normalize_or(Vec3::Z);
-        for corner in 0..3 {
-            let vertex = mesh.triangles[triangle][corner] as usize;
-            if usable.get(vertex).copied().unwrap_or(true) {
-                continue;
-            }
-            replaced += 1;
-            if std::mem::replace(&mut is_taken[vertex], true) {
-                mesh.triangles[triangle][corner] = mesh.positions.len() as u32;
-                mesh.positions.push(mesh.positions[vertex]);
-                mesh.uvs.extend(mesh.uvs.get(vertex).copied());
-                mesh.normals.push(facet);
-            } else {
-                mesh.normals[vertex] = facet;
-            }
-        }
-    }
-    replaced
 }
