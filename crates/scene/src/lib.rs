@@ -1,6 +1,6 @@
-//! Scene description for diacaustic: TOML, OBJ and primitives, validated. No GPU.
+//! Scene description for diacaustic: TOML, OBJ, glTF and primitives, validated. No GPU.
 //!
-//! [`load_scene`] reads a scene file and the meshes and images that it names. A [`Scene`] can be built in code as well;
+//! [`load_scene`] reads a scene file and the meshes and images that it names, [`load_gltf_scene`] a glTF file by itself. A [`Scene`] can be built in code as well;
 //! [`Scene::validate`] then checks it the same way.
 //!
 //! ```
@@ -59,6 +59,7 @@ mod read_toml;
 mod scene;
 mod solid;
 mod spectrum;
+mod studio;
 mod substances;
 mod texture;
 mod texture_image;
@@ -81,6 +82,7 @@ pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, Tone
 pub use spectrum::{
     LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,
 };
+pub use studio::{StudioOptions, load_gltf_scene};
 pub use substances::{SUBSTANCES, Substance, substance};
 pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};
 pub use texture_image::{ColorSpace, Picture, load_texture};

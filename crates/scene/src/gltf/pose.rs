@@ -103,6 +103,9 @@ fn of_vertices<'a>(accessor: Accessor<'a>, vertices: usize, place: &str) -> Resu
 fn joints(root: &Root, buffers: &Buffers<'_>, nodes: &Nodes, skin: usize, user: &str) -> Result<Vec<Mat4>> {
     let skin_entry = entry(&root.skins, "skins", skin, user)?;
     let place = place("skins", skin, skin_entry.name.as_deref());
+    if skin_entry.joints.is_empty() {
+        return Err(Fault::new(place, "has no joints; it must have one at least"));
+    }
     let inverse = skin_entry.inverse_bind_matrices.map(|index| {
         of_vertices(Accessor::new(root, buffers, index.value(), Type::Mat4, &place)?, skin_entry.joints.len(), &place)
     });
