@@ -227,7 +227,7 @@ fn numbers_that_are_none_are_refused() {
         builder.bytes[..4].copy_from_slice(&bad.to_le_bytes());
         let message = message(&builder.glb());
         assert!(
-            message.contains("meshes[0].primitives[0]: has the position") && message.contains("vertex 0"),
+            message.contains("meshes[0].primitives[0]: has the position") && message.contains("at vertex 0"),
             "{message}"
         );
     }

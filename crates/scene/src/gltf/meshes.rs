@@ -12,7 +12,7 @@ use gltf_json::{
 use super::{
     buffers::Buffers,
     fault::{Fault, Result, entry, place},
-    pose::Pose,
+    pose::{Pose, PrimitivePose},
     primitives::{Corners, attribute},
 };
 use crate::Mesh;
@@ -63,7 +63,7 @@ impl<'a, 'b> MeshReader<'a, 'b> {
             self.take(corners.triangles.len(), &place)?;
             self.warn_of(primitive, &corners, uv_set, &place)?;
             let pose = pose.of_primitive(self.root, self.buffers, primitive, corners.positions.count, &place)?;
-            builder.add(&corners, &pose, material, &place)?;
+            builder.add(corners, &pose, material, &place)?;
         }
         let (built, replaced) = builder.finish();
         if replaced > 0 {
@@ -128,13 +128,11 @@ fn has_colors(root: &Root, buffers: &Buffers<'_>, primitive: &Primitive, vertice
     Ok(false)
 }
 
-/// A mesh in the making.
+/// A mesh in the making. What all primitives so far lack takes no memory.
 #[derive(Default)]
 struct Builder {
     mesh: Mesh,
     slots: Vec<Option<usize>>,
-    has_normals: bool,
-    has_uvs: bool,
     /// Corners of primitives that have no normals at all.
     corners_without: usize,
 }
@@ -142,59 +140,82 @@ struct Builder {
 impl Builder {
     fn add(
         &mut self,
-        corners: &Corners<'_>,
-        pose: &super::pose::PrimitivePose<'_>,
+        mut corners: Corners<'_>,
+        pose: &PrimitivePose<'_>,
         material: Option<usize>,
         place: &str,
     ) -> Result<()> {
-        if corners.triangles.is_empty() {
+        let mut triangles = std::mem::take(&mut corners.triangles);
+        if triangles.is_empty() {
             return Ok(());
         }
-        let numbering = Numbering::of(&corners.triangles, corners.positions.count);
+        let numbering = Numbering::of(&triangles, corners.positions.count);
         let first = self.mesh.positions.len();
-        if first.saturating_add(numbering.used.len()) >= u32::MAX as usize {
+        let vertices = first.saturating_add(numbering.used.len());
+        if vertices >= u32::MAX as usize {
             return Err(Fault::new(place, "brings its mesh to 2^32 vertices; it must have fewer"));
         }
-        for &vertex in &numbering.used {
-            self.add_vertex(corners, pose, vertex as usize, place)?;
-        }
-        self.has_normals |= corners.normals.is_some();
-        self.has_uvs |= corners.uvs.is_some();
+        self.add_vertices(&corners, pose, &numbering.used, place)?;
         if corners.normals.is_none() {
-            self.corners_without += 3 * corners.triangles.len();
+            self.corners_without += 3 * triangles.len();
         }
-        let slot = self.slot(material);
-        let number = |vertex| first as u32 + numbering.number(vertex);
-        self.mesh.triangles.extend(corners.triangles.iter().map(|triangle| triangle.map(number)));
-        self.mesh.triangle_slots.resize(self.mesh.triangles.len(), slot);
+        triangles.iter_mut().flatten().for_each(|vertex| *vertex = first as u32 + numbering.number(*vertex));
+        self.add_triangles(triangles, material);
         Ok(())
     }
 
-    fn add_vertex(
+    fn add_vertices(
         &mut self,
         corners: &Corners<'_>,
-        pose: &super::pose::PrimitivePose<'_>,
-        vertex: usize,
+        pose: &PrimitivePose<'_>,
+        used: &[u32],
         place: &str,
     ) -> Result<()> {
-        let position = Vec3::from(corners.positions.numbers(vertex));
-        let normal = corners.normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals.numbers(vertex)));
-        let (position, normal) = pose.apply(vertex, position, normal);
-        // (0, 0) is a picture's upper left corner in glTF, and its lower left one here.
-        let [u, v] = corners.uvs.as_ref().map_or([0.0, 0.0], |uvs| uvs.numbers(vertex));
-        let uv = Vec2::new(u, 1.0 - v);
-        if !position.is_finite() || !uv.is_finite() {
-            return Err(Fault::new(
-                place,
-                format!(
-                    "has the position {position} and the texture coordinates {uv} at vertex {vertex}; all numbers must be finite"
-                ),
-            ));
+        let Mesh { positions, normals, uvs, .. } = &mut self.mesh;
+        let before = positions.len();
+        positions.reserve_exact(used.len());
+        if corners.normals.is_some() || !normals.is_empty() {
+            normals.resize(before + used.len(), Vec3::ZERO);
         }
-        self.mesh.positions.push(position);
-        self.mesh.normals.push(if normal.is_finite() { normal } else { Vec3::ZERO });
-        self.mesh.uvs.push(uv);
+        if corners.uvs.is_some() || !uvs.is_empty() {
+            uvs.resize(before + used.len(), Vec2::ZERO);
+        }
+        for (number, &vertex) in (before..).zip(used) {
+            let vertex = vertex as usize;
+            let position = Vec3::from(corners.positions.numbers(vertex));
+            let normal = corners.normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals.numbers(vertex)));
+            let (position, normal) = pose.apply(vertex, position, normal);
+            if !position.is_finite() {
+                return Err(not_finite("position", position, vertex, place));
+            }
+            positions.push(position);
+            if let Some(stored) = normals.get_mut(number).filter(|_| normal.is_finite()) {
+                *stored = normal;
+            }
+            if let Some(given) = &corners.uvs {
+                let [u, v] = given.numbers(vertex);
+                // (0, 0) is a picture's upper left corner in glTF, and its lower left one here.
+                uvs[number] = Vec2::new(u, 1.0 - v);
+                if !uvs[number].is_finite() {
+                    return Err(not_finite("texture coordinates", Vec2::new(u, v), vertex, place));
+                }
+            }
+        }
         Ok(())
+    }
+
+    fn add_triangles(&mut self, triangles: Vec<[u32; 3]>, material: Option<usize>) {
+        let before = self.mesh.triangles.len();
+        let slot = self.slot(material);
+        if slot > 0 || !self.mesh.triangle_slots.is_empty() {
+            self.mesh.triangle_slots.resize(before, 0);
+            self.mesh.triangle_slots.resize(before + triangles.len(), slot);
+        }
+        if before == 0 {
+            self.mesh.triangles = triangles;
+        } else {
+            self.mesh.triangles.extend(triangles);
+        }
     }
 
     fn slot(&mut self, material: Option<usize>) -> u32 {
@@ -208,20 +229,16 @@ impl Builder {
     /// The mesh, if it has triangles, and how many corners have unusable normals.
     fn finish(mut self) -> (Option<SlottedMesh>, usize) {
         let mut replaced = 0;
-        if self.has_normals {
+        if !self.mesh.normals.is_empty() {
             replaced = self.mesh.replace_unusable_normals().saturating_sub(self.corners_without);
-        } else {
-            self.mesh.normals.clear();
-        }
-        if !self.has_uvs {
-            self.mesh.uvs.clear();
-        }
-        if self.slots.len() < 2 {
-            self.mesh.triangle_slots.clear();
         }
         let Self { mesh, slots, .. } = self;
         ((!mesh.triangles.is_empty()).then_some(SlottedMesh { mesh, slots }), replaced)
     }
+}
+
+fn not_finite(what: &str, found: impl std::fmt::Display, vertex: usize, place: &str) -> Fault {
+    Fault::new(place, format!("has the {what} {found} at vertex {vertex}; all numbers must be finite"))
 }
 
 /// The vertices that triangles use, in rising order, and the number of each among them.

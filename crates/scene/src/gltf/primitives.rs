@@ -62,15 +62,18 @@ impl<'a> Corners<'a> {
         if vertices >= u32::MAX as usize {
             return Err(Fault::new(place, format!("has {vertices} vertices; it must have fewer than 2^32")));
         }
-        let vertex_indices = match primitive.indices {
-            Some(index) => read_indices(root, buffers, index.value(), vertices, place)?,
-            None => (0..vertices as u32).collect(),
-        };
+        let indices = primitive.indices.map(|index| index_accessor(root, buffers, index.value(), place)).transpose()?;
+        let count = indices.as_ref().map_or(vertices, |indices| indices.count);
+        let index = |at: usize| indices.as_ref().map_or(at as u32, |indices| indices.whole(at));
+        if let Some(at) = (0..count).find(|at| index(*at) as usize >= vertices) {
+            let problem = format!("has the index {} at {at}, but {place} has {vertices} vertices, from 0", index(at));
+            return Err(Fault::new(indices.as_ref().map_or(place, |indices| &indices.place), problem));
+        }
         Ok(Some(Self {
             normals: find(Semantic::Normals, Type::Vec3, vertices)?,
             uvs: find(Semantic::TexCoords(uv_set), Type::Vec2, vertices)?,
             positions,
-            triangles: triangles(mode, &vertex_indices, place)?,
+            triangles: triangles(mode, count, index, place)?,
         }))
     }
 }
@@ -82,41 +85,31 @@ fn no_positions(primitive: &Primitive, place: &str) -> Fault {
     Fault::new(place, format!("has no POSITION{which}; a primitive must have positions"))
 }
 
-fn read_indices(root: &Root, buffers: &Buffers<'_>, index: usize, vertices: usize, place: &str) -> Result<Vec<u32>> {
+fn index_accessor<'a>(root: &Root, buffers: &'a Buffers<'_>, index: usize, place: &str) -> Result<Accessor<'a>> {
     let accessor = Accessor::new(root, buffers, index, Type::Scalar, &format!("{place}.indices"))?;
     if !accessor.is_unsigned() {
         return Err(Fault::new(&accessor.place, "is used as indices; its componentType must be 5121, 5123 or 5125"));
     }
-    let indices: Vec<_> = (0..accessor.count).map(|at| accessor.whole(at)).collect();
-    match indices.iter().position(|index| *index as usize >= vertices) {
-        Some(at) => Err(Fault::new(
-            &accessor.place,
-            format!("has the index {} at {at}, but {place} has {vertices} vertices, from 0", indices[at]),
-        )),
-        None => Ok(indices),
-    }
+    Ok(accessor)
 }
 
-/// The triangles that the indices of a list, strip or fan stand for.
-fn triangles(mode: Mode, indices: &[u32], place: &str) -> Result<Vec<[u32; 3]>> {
+/// The triangles that the `count` indices of a list, strip or fan stand for.
+fn triangles(mode: Mode, count: usize, index: impl Fn(usize) -> u32, place: &str) -> Result<Vec<[u32; 3]>> {
     let is_proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-    let count = indices.len();
-    match mode {
+    let in_order = |places: [usize; 3]| places.map(&index);
+    let beyond_two = 0..count.saturating_sub(2);
+    Ok(match mode {
+        // Triangles without area join the parts of a strip.
         Mode::TriangleStrip => {
-            let triangle =
-                |(number, w): (usize, &[u32])| if number % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] };
-            // Triangles without area join the parts of a strip.
-            Ok(indices.windows(3).enumerate().map(triangle).filter(is_proper).collect())
+            let triangle = |at: usize| in_order([at, at + 1 + at % 2, at + 2 - at % 2]);
+            beyond_two.map(triangle).filter(is_proper).collect()
         }
-        Mode::TriangleFan => {
-            let rim = indices.get(1..).unwrap_or_default();
-            Ok(rim.windows(2).map(|w| [w[0], w[1], indices[0]]).filter(is_proper).collect())
-        }
+        Mode::TriangleFan => beyond_two.map(|at| in_order([at + 1, at + 2, 0])).filter(is_proper).collect(),
         _ if !count.is_multiple_of(3) => {
-            Err(Fault::new(place, format!("has {count} corners of triangles; they must be a multiple of 3")))
+            return Err(Fault::new(place, format!("has {count} corners of triangles; they must be a multiple of 3")));
         }
-        _ => Ok(indices.as_chunks().0.to_vec()),
-    }
+        _ => (0..count / 3).map(|triangle| in_order([0, 1, 2].map(|corner| 3 * triangle + corner))).collect(),
+    })
 }
 
 #[cfg(test)]
@@ -125,11 +118,13 @@ mod tests {
 
     #[test]
     fn strips_and_fans_keep_their_winding() {
+        let read = |mode, indices: &[u32]| triangles(mode, indices.len(), |at| indices[at], "meshes[0]");
         let indices = [0, 1, 2, 3, 4];
-        assert_eq!(triangles(Mode::TriangleStrip, &indices, "").unwrap(), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
-        assert_eq!(triangles(Mode::TriangleFan, &indices, "").unwrap(), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
-        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5], "").unwrap(), [[0, 1, 2], [3, 5, 4]]);
-        assert!(triangles(Mode::TriangleFan, &[0], "").unwrap().is_empty());
-        assert!(triangles(Mode::Triangles, &indices, "meshes[0]").is_err());
+        assert_eq!(read(Mode::TriangleStrip, &indices).unwrap(), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(read(Mode::TriangleFan, &indices).unwrap(), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
+        assert_eq!(read(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]).unwrap(), [[0, 1, 2], [3, 5, 4]]);
+        assert_eq!(read(Mode::Triangles, &[0, 1, 2, 2, 1, 3]).unwrap(), [[0, 1, 2], [2, 1, 3]]);
+        assert!(read(Mode::TriangleFan, &[0]).unwrap().is_empty());
+        assert!(read(Mode::Triangles, &indices).is_err());
     }
 }
