@@ -3,7 +3,7 @@
 use std::{
     fs::{self, File},
     io::Read,
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
 /// What a reader of files may do.
@@ -26,54 +26,49 @@ impl Folder {
         Self { path: parent.unwrap_or(Path::new(".")).to_owned(), allow_outside: options.allow_outside }
     }
 
-    /// The path of a file in the folder, or what is wrong with its name: it leads out of the folder, or to no file.
-    pub(crate) fn resolve(&self, name: &str) -> Result<PathBuf, String> {
+    /// The path of a file in the folder; refused if it leads out of it, by its name or by a link.
+    pub(crate) fn inside(&self, name: &str) -> Result<PathBuf, String> {
         let path = self.path.join(name);
-        if !self.allow_outside && leads_outside(Path::new(name)) {
-            return Err(outside(name));
+        let leaves = || match (fs::canonicalize(&path), fs::canonicalize(&self.path)) {
+            (Ok(real), Ok(root)) => !real.starts_with(root),
+            _ => false,
+        };
+        if !self.allow_outside && (leads_outside(name) || leaves()) {
+            return Err(format!(
+                "names the file {name:?}, which lies outside the folder; copy it there, or give --allow-outside"
+            ));
         }
-        let place = |problem| format!("names the file {}, which {problem}", path.display());
-        let real = fs::canonicalize(&path).map_err(|error| place(format!("cannot be read: {error}")))?;
-        let root = fs::canonicalize(&self.path).map_err(|error| place(format!("cannot be read: {error}")))?;
-        if !self.allow_outside && !real.starts_with(root) {
-            return Err(outside(name));
-        }
-        if real.is_file() { Ok(path) } else { Err(place("is no ordinary file".to_owned())) }
+        Ok(path)
     }
 
     /// The bytes of a file in the folder, `most` at most.
     pub(crate) fn read(&self, name: &str, most: u64) -> Result<Vec<u8>, String> {
-        let path = self.resolve(name)?;
+        let path = self.inside(name)?;
         let problem = |error| format!("names the file {}, which cannot be read: {error}", path.display());
+        if !fs::metadata(&path).map_err(problem)?.is_file() {
+            return Err(format!("names the file {}, which is no ordinary file", path.display()));
+        }
         let mut bytes = Vec::new();
         File::open(&path).map_err(problem)?.take(most).read_to_end(&mut bytes).map_err(problem)?;
         Ok(bytes)
     }
 }
 
-fn outside(name: &str) -> String {
-    format!("names the file {name:?}, which lies outside the folder; copy it there, or give --allow-outside")
-}
-
-/// Whether a relative path has more steps up than down at some point, or is none.
-fn leads_outside(path: &Path) -> bool {
-    // A Windows path in a file from there.
-    if path.to_string_lossy().contains('\\') {
-        return true;
-    }
+/// Whether a path has more steps up than down at some point, or begins at a root or drive, on whatever system it was written.
+fn leads_outside(name: &str) -> bool {
+    let name = name.replace('\\', "/");
     let mut depth = 0i64;
-    for component in path.components() {
-        match component {
-            Component::Normal(_) => depth += 1,
-            Component::CurDir => {}
-            Component::ParentDir => depth -= 1,
-            Component::RootDir | Component::Prefix(_) => return true,
+    for step in name.split('/') {
+        match step {
+            "" | "." => {}
+            ".." => depth -= 1,
+            _ => depth += 1,
         }
         if depth < 0 {
             return true;
         }
     }
-    false
+    name.starts_with('/') || name.as_bytes().get(1) == Some(&b':')
 }
 
 #[cfg(test)]
@@ -82,11 +77,11 @@ mod tests {
 
     #[test]
     fn steps_up_are_counted() {
-        for outside in ["/etc/passwd", "../a", "a/../../b", "./../a", "a\\..\\b", "C:\\a"] {
-            assert!(leads_outside(Path::new(outside)), "{outside}");
+        for outside in ["/etc/passwd", "../a", "a/../../b", "./../a", "a\\..\\..\\b", "C:\\a"] {
+            assert!(leads_outside(outside), "{outside}");
         }
-        for inside in ["a", "a/b.bin", "./a", "a/../b", "..a/b", "a b"] {
-            assert!(!leads_outside(Path::new(inside)), "{inside}");
+        for inside in ["a", "a/b.bin", "./a", "a/../b", "..a/b", "a b", "a\\b"] {
+            assert!(!leads_outside(inside), "{inside}");
         }
     }
 }

@@ -8,7 +8,7 @@ use std::{collections::HashMap, fs, path::Path};
 use glam::{Vec2, Vec3};
 
 use self::check::{Checked, check};
-use crate::{Chart, Error, Material, Mesh, Warning};
+use crate::{Chart, Error, Material, Mesh, ReadOptions, Warning};
 
 /// A mesh from an OBJ file, with what its material libraries say.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,17 +30,18 @@ pub struct ObjFile {
 /// is a dielectric.
 ///
 /// # Errors
-/// If the OBJ file cannot be read or makes no sense. A fault of a material library is a warning.
-pub fn load_obj(path: &Path) -> Result<ObjFile, Error> {
+/// If the OBJ file cannot be read or makes no sense. A fault of a material library is a warning, also that it lies outside the file's
+/// folder where the options do not allow it.
+pub fn load_obj(path: &Path, options: ReadOptions) -> Result<ObjFile, Error> {
     let bytes = fs::read(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
-    parse_obj(&String::from_utf8_lossy(&bytes), path)
+    parse_obj(&String::from_utf8_lossy(&bytes), path, options)
 }
 
 /// Reads a mesh from OBJ text; material libraries are sought beside `path`, which messages name.
 ///
 /// # Errors
 /// If the text makes no sense. A fault of a material library is a warning.
-pub fn parse_obj(text: &str, path: &Path) -> Result<ObjFile, Error> {
+pub fn parse_obj(text: &str, path: &Path, options: ReadOptions) -> Result<ObjFile, Error> {
     let checked = check(text, path)?;
     let mut mesh = merge_models(read_models(&checked, path)?);
     let mut warnings = Vec::new();
@@ -51,7 +52,7 @@ pub fn parse_obj(text: &str, path: &Path) -> Result<ObjFile, Error> {
     if checked.slots.iter().any(|slot| !slot.is_empty()) {
         mesh.material_slots = checked.slots;
     }
-    let materials = mtl::slot_materials(&mesh.material_slots, &checked.libraries, path, &mut warnings);
+    let materials = mtl::slot_materials(&mesh.material_slots, &checked.libraries, path, options, &mut warnings);
     if mesh.material_slots.len() < 2 {
         mesh.triangle_slots.clear();
     }

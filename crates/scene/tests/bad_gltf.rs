@@ -132,12 +132,12 @@ fn faults() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/materials/0/pbrMetallicRoughness/metallicFactor",
             json!(2),
-            "materials[0]: has a metallicFactor of 2; it must be from 0 to 1",
+            "materials[0]: has 2 as its metallicFactor; it must be from 0 to 1",
         ),
         (
             "/materials/0/pbrMetallicRoughness/baseColorFactor",
             json!([1, 1, 1, -1]),
-            "materials[0]: has a baseColorFactor of -1",
+            "materials[0]: has -1 as its baseColorFactor",
         ),
         ("/materials/0/pbrMetallicRoughness/baseColorTexture/index", json!(4), "names textures[4]"),
         ("/materials/0/emissiveFactor", json!([-1, 0, 0]), "materials[0]: has the emission"),
@@ -156,7 +156,7 @@ fn faults() -> Vec<(&'static str, Value, &'static str)> {
         (
             "/materials/0/extensions/KHR_materials_volume/attenuationColor",
             json!([9, 0, 0]),
-            "materials[0]: has a attenuationColor of 9",
+            "materials[0]: has 9 as its attenuationColor",
         ),
         (
             "/materials/0/normalTexture/extensions/KHR_texture_transform",

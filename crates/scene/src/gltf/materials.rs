@@ -114,7 +114,7 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let glass = self.glass(index, &numbers, &pictures, &place)?;
         let name = self.names[index].clone();
         let is_volume = is_closed && self.is_volume(Some(index));
-        let Some(glass) = glass else { return Ok(self.opaque(name, &numbers, pictures, &place)) };
+        let Some(glass) = glass else { return Ok(opaque(name, &numbers, pictures)) };
         if !is_volume && self.is_volume(Some(index)) {
             self.warn(&place, "is on a surface that is not closed; there its glass has no thickness (thin_walled)");
             return Ok(self.sheet(format!("{name} (thin-walled)"), glass, &numbers, pictures, &place));
@@ -224,19 +224,6 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         }
     }
 
-    fn opaque(&mut self, name: String, numbers: &Numbers, pictures: Pictures, place: &str) -> Material {
-        let Numbers { base_color, metallic, roughness, emission, .. } = *numbers;
-        let emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
-        let mut material = Material {
-            emission,
-            ..Material::new(name, MaterialKind::MetallicRoughness { base_color, metallic, roughness })
-        };
-        material.textures =
-            Textures { emission: emission_picture, metallic: pictures.channel(METALLIC), ..pictures.textures() };
-        self.set_opacity(&mut material, numbers, &pictures, place);
-        material
-    }
-
     fn sheet(&mut self, name: String, glass: Glass, numbers: &Numbers, pictures: Pictures, place: &str) -> Material {
         self.warn_of_emission(numbers, place);
         let roughness =
@@ -249,7 +236,7 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         }
         let mut material = Material::new(name, MaterialKind::ThinWalled { ior: glass.ior, tint: numbers.base_color });
         material.textures = Textures { roughness: None, ..pictures.textures() };
-        self.set_opacity(&mut material, numbers, &pictures, place);
+        set_opacity(&mut material, numbers, &pictures);
         material
     }
 
@@ -282,15 +269,30 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
             self.warn(place, "is glass and has an emissiveFactor; glass shines not, so it is left out");
         }
     }
+}
 
-    fn set_opacity(&mut self, material: &mut Material, numbers: &Numbers, pictures: &Pictures, _place: &str) {
-        if numbers.alpha_mode == AlphaMode::Opaque {
-            return;
-        }
-        material.opacity = numbers.alpha;
-        material.textures.opacity = pictures.alpha.clone();
-        material.opacity_cutoff = (numbers.alpha_mode == AlphaMode::Mask).then_some(numbers.alpha_cutoff);
+/// A material through which no light passes.
+fn opaque(name: String, numbers: &Numbers, pictures: Pictures) -> Material {
+    let Numbers { base_color, metallic, roughness, emission, .. } = *numbers;
+    let emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
+    let mut material = Material {
+        emission,
+        ..Material::new(name, MaterialKind::MetallicRoughness { base_color, metallic, roughness })
+    };
+    material.textures =
+        Textures { emission: emission_picture, metallic: pictures.channel(METALLIC), ..pictures.textures() };
+    set_opacity(&mut material, numbers, &pictures);
+    material
+}
+
+/// Sets what an alpha mode other than OPAQUE makes of the coverage.
+fn set_opacity(material: &mut Material, numbers: &Numbers, pictures: &Pictures) {
+    if numbers.alpha_mode == AlphaMode::Opaque {
+        return;
     }
+    material.opacity = numbers.alpha;
+    material.textures.opacity = pictures.alpha.clone();
+    material.opacity_cutoff = (numbers.alpha_mode == AlphaMode::Mask).then_some(numbers.alpha_cutoff);
 }
 
 /// What a surface without a material is.
@@ -366,7 +368,7 @@ fn share(number: f32, key: &str, place: &str) -> Result<f32> {
     if (0.0..=1.0).contains(&number) {
         return Ok(number);
     }
-    Err(Fault::new(place, format!("has a {key} of {number}; it must be from 0 to 1")))
+    Err(Fault::new(place, format!("has {number} as its {key}; it must be from 0 to 1")))
 }
 
 /// What glass does to light, besides its colour and roughness.

@@ -20,6 +20,9 @@ use crate::Mesh;
 /// The most triangles of a file, over all its meshes.
 pub(super) const MOST_TRIANGLES: usize = 1 << 27;
 
+/// The corner of a picture that shows where there are no texture coordinates.
+const UPPER_LEFT: Vec2 = Vec2::Y;
+
 /// A mesh, and for each of its slots the index of its material (none for the default one).
 pub(super) struct SlottedMesh {
     pub(super) mesh: Mesh,
@@ -55,7 +58,7 @@ impl<'a, 'b> MeshReader<'a, 'b> {
             let place = format!("{mesh_place}.primitives[{number}]");
             let material = primitive.material.map(|material| material.value());
             let uv_set = uv_set_of(material)?;
-            let corners = Corners::read(self.root, self.buffers, primitive, uv_set.unwrap_or(0), &place)?;
+            let corners = Corners::read(self.root, self.buffers, primitive, uv_set, &place)?;
             let Some(corners) = corners else {
                 self.warnings.push(Fault::new(place, "has points or lines, which are not shown"));
                 continue;
@@ -177,8 +180,8 @@ impl Builder {
         if corners.normals.is_some() || !normals.is_empty() {
             normals.resize(before + used.len(), Vec3::ZERO);
         }
-        if corners.uvs.is_some() || !uvs.is_empty() {
-            uvs.resize(before + used.len(), Vec2::ZERO);
+        if corners.uvs.is_some() || corners.has_pictures || !uvs.is_empty() {
+            uvs.resize(before + used.len(), UPPER_LEFT);
         }
         for (number, &vertex) in (before..).zip(used) {
             let vertex = vertex as usize;

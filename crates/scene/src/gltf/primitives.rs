@@ -18,6 +18,8 @@ pub(super) struct Corners<'a> {
     pub(super) positions: Accessor<'a>,
     pub(super) normals: Option<Accessor<'a>>,
     pub(super) uvs: Option<Accessor<'a>>,
+    /// Whether pictures lie on the surface, which then must have texture coordinates, if only of one point.
+    pub(super) has_pictures: bool,
     /// Vertices of each triangle, all of which are in range.
     pub(super) triangles: Vec<[u32; 3]>,
 }
@@ -42,12 +44,13 @@ pub(super) fn attribute<'a>(
 }
 
 impl<'a> Corners<'a> {
-    /// Reads a primitive with the texture coordinates of set `uv_set`; none for points and lines.
+    /// Reads a primitive with the texture coordinates of set `uv_set`, if there is one that its material needs; none for points
+    /// and lines.
     pub(super) fn read(
         root: &Root,
         buffers: &'a Buffers<'_>,
         primitive: &Primitive,
-        uv_set: u32,
+        uv_set: Option<u32>,
         place: &str,
     ) -> Result<Option<Self>> {
         let Checked::Valid(mode) = primitive.mode else {
@@ -71,7 +74,8 @@ impl<'a> Corners<'a> {
         }
         Ok(Some(Self {
             normals: find(Semantic::Normals, Type::Vec3, vertices)?,
-            uvs: find(Semantic::TexCoords(uv_set), Type::Vec2, vertices)?,
+            uvs: find(Semantic::TexCoords(uv_set.unwrap_or(0)), Type::Vec2, vertices)?,
+            has_pictures: uv_set.is_some(),
             positions,
             triangles: triangles(mode, count, index, place)?,
         }))

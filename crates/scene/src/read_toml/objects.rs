@@ -225,7 +225,7 @@ impl<'a> ObjectReader<'a> {
                 path.display()
             )));
         }
-        let file = load_obj(&path).map_err(|cause| in_file(entry, cause))?;
+        let file = load_obj(&path, self.options).map_err(|cause| in_file(entry, cause))?;
         self.warnings.extend(file.warnings.iter().filter(|warning| !is_about_textures(warning)).cloned());
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let shared = SharedMesh {
