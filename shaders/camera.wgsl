@@ -1,17 +1,21 @@
 // Phase 2: one sample of every pixel. A path follows casters and bounces between receivers; at each receiver it gathers the light it can
 // see and the irradiance in the energy map. docs/materials.md defines what surfaces do.
 
+import package::bsdf::albedo::albedo;
 import package::bsdf::base::{base_bsdf, gloss_reflectance};
 import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{evaluate_specular, outer_interface, scatter_specular, Interface};
 import package::emitter::illumination::{illuminate, FAR};
 import package::emitter::sky::{light_probability, sky_radiance};
 import package::emitter::sphere::{nearest_sphere, SphereHit};
+import package::film::layers::{add_to_data_layers, add_to_layer, add_to_squares};
 import package::film::texels::footprint;
 import package::geometry::surface::{leave, surface_point, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
-import package::layout::camera_pass::{camera_params, film, irradiance, sightings, Sighting};
-import package::layout::features::{has_dispersion, has_textures, notes_sightings};
+import package::layout::camera_pass::{
+    camera_params, data_layers, film, irradiance, sightings, Sighting, LAYER_CAUSTIC, LAYER_DIRECT, LAYER_EMISSION, LAYER_INDIRECT,
+};
+import package::layout::features::{has_data_layers, has_dispersion, has_light_layers, has_textures, notes_sightings};
 import package::layout::records::{load_light, load_material, load_triangle, record_texel};
 import package::layout::scene::{
     Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
@@ -69,6 +73,15 @@ struct Path {
     shadow_direction: vec3<f32>,
     shadow_length: f32,
     unblocked: vec3<f32>,
+    /// Of this, what the first casters on the path send to the camera; the layer of the rest.
+    unblocked_emission: vec3<f32>,
+    shadow_layer: u32,
+    /// The pixel, row by row from the top left.
+    pixel: u32,
+    /// The layer of light that the path meets.
+    layer: u32,
+    /// Whether the path has met a surface that is kept in the layers.
+    has_first_surface: bool,
     /// Seed of the pixel's random numbers.
     seed: u32,
     /// What it has seen of the energy maps, but for the radiance.
@@ -87,7 +100,8 @@ fn filter_offset(u: f32) -> f32 {
 
 /// The camera ray of this sample of a pixel.
 fn start_path(pixel: vec2<u32>) -> Path {
-    let seed = combine(camera_params.seed, pixel.y * camera_params.width + pixel.x);
+    let index = pixel.y * camera_params.width + pixel.x;
+    let seed = combine(camera_params.seed, index);
     let numbers = sobol_5(camera_params.sample_index, seed);
     let u = numbers.first;
     let size = vec2<f32>(f32(camera_params.width), f32(camera_params.height));
@@ -105,6 +119,8 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.wavelength = first_wavelength();
     path.goes_on = true;
     path.seed = seed;
+    path.pixel = index;
+    path.layer = LAYER_EMISSION;
     path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
     return path;
 }
@@ -186,6 +202,43 @@ fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex 
     return vertex;
 }
 
+/// Adds radiance to the path, and to a layer.
+fn add_light(path: ptr<function, Path>, layer: u32, radiance: vec3<f32>) {
+    (*path).radiance += radiance;
+    add_to_layer((*path).pixel, layer, radiance);
+}
+
+/// The layer of what the path gathers at a receiver: `first` at the first one.
+fn layer_at_receiver(path: ptr<function, Path>, first: u32) -> u32 {
+    return select(LAYER_INDIRECT, first, (*path).layer == LAYER_EMISSION);
+}
+
+/// Lets a path pass a caster: what it meets beyond is seen through casters, or came by more than a receiver.
+fn pass_caster(path: ptr<function, Path>) {
+    (*path).layer = layer_at_receiver(path, LAYER_EMISSION);
+    (*path).depth += 1u;
+}
+
+/// Keeps the first surface that a path meets.
+fn keep_first_surface(path: ptr<function, Path>, position: vec3<f32>, normal: vec3<f32>, albedo: vec3<f32>) {
+    let depth = dot(position - camera_params.position, camera_params.forward);
+    add_to_data_layers((*path).pixel, position, depth, normal, albedo);
+    (*path).has_first_surface = true;
+}
+
+/// Keeps a vertex, if it is the path's first, and of the pixel's first sample what it is of.
+fn keep_first_vertex(path: ptr<function, Path>, vertex: Vertex, triangle: Triangle) {
+    if (*path).has_first_surface {
+        return;
+    }
+    let cosine = -dot((*path).direction, vertex.point.n_s);
+    keep_first_surface(path, vertex.point.position, vertex.point.n_s, albedo(vertex.material, cosine, vertex.sides));
+    if camera_params.sample_index == 0u {
+        data_layers[(*path).pixel].object = triangle.object + 1u;
+        data_layers[(*path).pixel].material = triangle.material + 1u;
+    }
+}
+
 /// Adds what the surface itself shines, but for what next-event estimation has counted.
 fn add_emission(path: ptr<function, Path>, vertex: Vertex, t: f32) {
     let emission = at_wavelength(vertex.material.emission, (*path).wavelength);
@@ -194,7 +247,7 @@ fn add_emission(path: ptr<function, Path>, vertex: Vertex, t: f32) {
     let pdf = (*path).lobe_pdf;
     let weight = select(1.0, pdf / (pdf + light_pdf), pdf > 0.0);
     let counts = vertex.point.front && !(*path).lights_counted;
-    (*path).radiance += select(vec3<f32>(0.0), (*path).beta * emission * weight, counts);
+    add_light(path, (*path).layer, select(vec3<f32>(0.0), (*path).beta * emission * weight, counts));
 }
 
 /// Irradiance in a texel of the energy maps, W/m².
@@ -209,8 +262,11 @@ fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
         + place.weights.z * map_irradiance(place.texels.z) + place.weights.w * map_irradiance(place.texels.w);
     let reflected = vertex.material.base / PI * (1.0 - vertex.gloss);
     var sent = at_wavelength(reflected, (*path).wavelength) * at_wavelength(caustic, (*path).wavelength);
+    add_to_layer((*path).pixel, layer_at_receiver(path, LAYER_CAUSTIC), (*path).beta * sent);
     if vertex.kind == MATERIAL_PHONG {
-        sent += at_wavelength(vertex.material.tint, (*path).wavelength) * at_wavelength(camera_params.ambient, (*path).wavelength);
+        let ambient = at_wavelength(vertex.material.tint, (*path).wavelength) * at_wavelength(camera_params.ambient, (*path).wavelength);
+        add_to_layer((*path).pixel, LAYER_INDIRECT, (*path).beta * ambient);
+        sent += ambient;
     }
     (*path).radiance += (*path).beta * sent;
     if notes_sightings {
@@ -250,7 +306,8 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
     let lobe = evaluate_specular(vertex.material, wo, wi, point.n_s, vertex.sides);
     let lobe_pdf = lobe.pdf * vertex.specular_chance;
     let weight = select(1.0, light.pdf / (light.pdf + lobe_pdf), light.pdf > 0.0);
-    reflected += select(vec3<f32>(0.0), lobe.value * weight, lobe_counts);
+    let by_lobe = select(vec3<f32>(0.0), lobe.value * weight, lobe_counts);
+    reflected += by_lobe;
     var media = (*path).media;
     if transmitted {
         media = vertex.beyond;
@@ -264,6 +321,13 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
         (*path).shadow_direction = wi;
         (*path).shadow_length = select(SHADOW_RAY_LENGTH * light.distance, FAR, light.distance >= FAR);
         (*path).unblocked = brought;
+        if has_light_layers {
+            // The gloss of a receiver that is no caster counts with its base.
+            let is_emission = vertex.is_caster && (*path).layer == LAYER_EMISSION;
+            let emission = (*path).beta * at_wavelength(by_lobe, wavelength) * arriving;
+            (*path).unblocked_emission = select(vec3<f32>(0.0), emission, is_emission);
+            (*path).shadow_layer = layer_at_receiver(path, LAYER_DIRECT);
+        }
     }
 }
 
@@ -326,9 +390,12 @@ fn meet_surface(path: ptr<function, Path>, hit: Hit) {
         (*path).media = vertex.beyond;
         (*path).origin = leave(vertex.point, (*path).direction);
         (*path).lobe_pdf = 0.0;
-        (*path).depth += 1u;
+        pass_caster(path);
         (*path).goes_on = (*path).depth < camera_params.max_depth;
         return;
+    }
+    if has_data_layers {
+        keep_first_vertex(path, vertex, triangle);
     }
     add_emission(path, vertex, hit.t);
     if vertex.is_receiver {
@@ -357,9 +424,11 @@ fn meet_surface(path: ptr<function, Path>, hit: Hit) {
         go_on_diffuse(path, vertex);
     }
     if takes_specular && vertex.is_caster {
-        (*path).depth += 1u;
+        pass_caster(path);
         (*path).goes_on = (*path).goes_on && (*path).depth < camera_params.max_depth;
     } else {
+        // Lights in the gloss of the first receiver are the part of its direct light that next-event estimation leaves.
+        (*path).layer = select(LAYER_INDIRECT, layer_at_receiver(path, LAYER_DIRECT), takes_specular);
         (*path).bounces += 1u;
         (*path).goes_on = (*path).goes_on && (*path).bounces <= camera_params.max_bounces;
         if (*path).bounces > BOUNCES_BEFORE_ROULETTE {
@@ -377,17 +446,29 @@ fn meet_sphere(path: ptr<function, Path>, sphere: SphereHit) {
     let weight = select(1.0, pdf / (pdf + light_probability(sphere.light) / solid_angle), pdf > 0.0);
     let strength = at_wavelength(light.strength, (*path).wavelength);
     let seen = (*path).beta * transmittance((*path).media, sphere.t, (*path).wavelength) * strength * weight;
-    (*path).radiance += select(seen, vec3<f32>(0.0), (*path).lights_counted);
+    add_light(path, (*path).layer, select(seen, vec3<f32>(0.0), (*path).lights_counted));
+    if has_data_layers && !(*path).has_first_surface {
+        let position = (*path).origin + sphere.t * (*path).direction;
+        keep_first_surface(path, position, normalize(position - light.position), vec3<f32>(0.0));
+    }
 }
 
 /// Lets a path leave the scene.
 fn meet_sky(path: ptr<function, Path>) {
     (*path).goes_on = false;
     var beyond = camera_params.background;
+    var sky = vec3<f32>(0.0);
     if !(*path).lights_counted {
-        beyond += sky_radiance(camera_params.first_sky_light, camera_params.light_count, (*path).direction, (*path).lobe_pdf);
+        sky = sky_radiance(camera_params.first_sky_light, camera_params.light_count, (*path).direction, (*path).lobe_pdf);
+        beyond += sky;
     }
     (*path).radiance += (*path).beta * at_wavelength(beyond, (*path).wavelength);
+    if has_light_layers {
+        // Next-event estimation knows nothing of the background, which lights receivers as what bounces does.
+        let of_background = layer_at_receiver(path, LAYER_EMISSION);
+        add_to_layer((*path).pixel, of_background, (*path).beta * at_wavelength(camera_params.background, (*path).wavelength));
+        add_to_layer((*path).pixel, (*path).layer, (*path).beta * at_wavelength(sky, (*path).wavelength));
+    }
 }
 
 /// Traces the path's shadow ray, then the ray along which it goes on, and lets it meet what is there.
@@ -407,6 +488,10 @@ fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
         *rays += 1u;
         let visible = is_shadow_ray && hit.triangle == NONE && sphere.t >= length;
         (*path).radiance += select(vec3<f32>(0.0), (*path).unblocked, visible);
+        if has_light_layers && visible {
+            add_to_layer((*path).pixel, LAYER_EMISSION, (*path).unblocked_emission);
+            add_to_layer((*path).pixel, (*path).shadow_layer, (*path).unblocked - (*path).unblocked_emission);
+        }
     }
     (*path).shadow_pending = false;
     if !(*path).goes_on {
@@ -453,7 +538,8 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     if atomicAdd(&film.rays_low, rays) > 0xffffffffu - rays {
         atomicAdd(&film.rays_high, 1u);
     }
-    let index = pixel.y * camera_params.width + pixel.x;
+    let index = path.pixel;
+    add_to_squares(index, film.pixels[index], path.radiance);
     film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {
         let seen = path.sighting;

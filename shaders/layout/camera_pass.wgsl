@@ -73,9 +73,41 @@ struct Sighting {
     radiance: f32,
 }
 
+/// Sums over a pixel's samples of what they met first, and their deviations.
+struct DataLayers {
+    /// Share of light that the surface sends on.
+    albedo: vec3<f32>,
+    /// Samples that met a surface.
+    surfaces: f32,
+    /// Unit shading normal, world frame, on the side of the camera.
+    normal: vec3<f32>,
+    /// Number, from 1, of the object that the pixel's first sample met; 0 without one.
+    object: u32,
+    /// Place, metres, world frame.
+    position: vec3<f32>,
+    /// Number, from 1, of the material that the pixel's first sample met; 0 without one.
+    material: u32,
+    /// Squared deviations of the samples' radiance from their mean, (W/(m² sr))².
+    squares: vec3<f32>,
+    /// Distance from the lens along the view, metres.
+    depth: f32,
+}
+
+/// The layers of light, in the order of their sums: docs/layers.md.
+const LAYER_EMISSION: u32 = 0u;
+const LAYER_DIRECT: u32 = 1u;
+const LAYER_CAUSTIC: u32 = 2u;
+const LAYER_INDIRECT: u32 = 3u;
+/// Layers of light.
+const LIGHT_LAYERS: u32 = 4u;
+
 @group(1) @binding(0) var<uniform> camera_params: CameraParams;
 /// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;
 /// Where paths note what they see, an entry for each pixel.
 @group(2) @binding(2) var<storage, read_write> sightings: array<Sighting>;
+/// For each pixel the sums of its layers of light, W/(m² sr); the last component is unused.
+@group(2) @binding(3) var<storage, read_write> light_layers: array<vec4<f32>>;
+/// An entry for each pixel.
+@group(2) @binding(4) var<storage, read_write> data_layers: array<DataLayers>;

@@ -27,3 +27,7 @@ override has_footprints: bool = true;
 override has_guide: bool = true;
 /// Whether camera paths note which texels they see.
 override notes_sightings: bool = false;
+/// Whether light is kept apart by how it came.
+override has_light_layers: bool = false;
+/// Whether it is kept what pixels show, and how much their samples vary.
+override has_data_layers: bool = false;

@@ -124,7 +124,7 @@ struct Material {
     specular: vec3<f32>,
     /// Index of refraction; exponent of Phong's specular lobe.
     ior: f32,
-    /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of textured surfaces x is a coat's reflectance from within, or the share of metal.
+    /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of coats x is their reflectance from within, of textured surfaces of glTF's model the share of metal.
     extinction: vec3<f32>,
     /// Width α of the microfacets' distribution, 0 for a smooth surface. Of a textured surface the roughness before its picture.
     gloss: f32,

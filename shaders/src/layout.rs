@@ -168,7 +168,7 @@ shared_structs! {
         specular: [f32; 3],
         /// Index of refraction; exponent of Phong's specular lobe.
         ior: f32,
-        /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of textured surfaces x is a coat's reflectance from within, or the share of metal.
+        /// Absorption coefficient of a dielectric's interior, 1/m; a conductor's imaginary index. Of coats x is their reflectance from within, of textured surfaces of glTF's model the share of metal.
         extinction: [f32; 3],
         /// Width α of the microfacets' distribution, 0 for a smooth surface. Of a textured surface the roughness before its picture.
         gloss: f32,
@@ -330,6 +330,25 @@ shared_structs! {
         /// Radiance that the path gathered, W/(m² sr), mean of the channels.
         radiance: f32,
     }
+    /// Sums over a pixel's samples of what they met first, and their deviations.
+    struct DataLayers {
+        /// Share of light that the surface sends on.
+        albedo: [f32; 3],
+        /// Samples that met a surface.
+        surfaces: f32,
+        /// Unit shading normal, world frame, on the side of the camera.
+        normal: [f32; 3],
+        /// Number, from 1, of the object that the pixel's first sample met; 0 without one.
+        object: u32,
+        /// Place, metres, world frame.
+        position: [f32; 3],
+        /// Number, from 1, of the material that the pixel's first sample met; 0 without one.
+        material: u32,
+        /// Squared deviations of the samples' radiance from their mean, (W/(m² sr))².
+        squares: [f32; 3],
+        /// Distance from the lens along the view, metres.
+        depth: f32,
+    }
     /// One dispatch of the resolve pass.
     struct ResolveParams {
         /// Watts in a unit of the sums, divided by the photons emitted.
@@ -446,6 +465,20 @@ pub mod texture_flag {
     pub const CHANNEL_SHIFT: u32 = 8;
 }
 
+/// The layers of light, in the order in which a pixel's sums stand in the film.
+pub mod light_layer {
+    /// Light seen straight or through casters.
+    pub const EMISSION: u32 = 0;
+    /// Light that a receiver reflects straight from a light.
+    pub const DIRECT: u32 = 1;
+    /// What energy maps show.
+    pub const CAUSTIC: u32 = 2;
+    /// All other light.
+    pub const INDIRECT: u32 = 3;
+    /// Layers of light.
+    pub const COUNT: u32 = 4;
+}
+
 /// Values of [`Light::kind`].
 pub mod light_kind {
     /// Lambertian sphere.
@@ -516,6 +549,11 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("LIGHT_SURFACE", light_kind::SURFACE),
     ("LIGHT_DISTANT", light_kind::DISTANT),
     ("LIGHT_ENVIRONMENT", light_kind::ENVIRONMENT),
+    ("LAYER_EMISSION", light_layer::EMISSION),
+    ("LAYER_DIRECT", light_layer::DIRECT),
+    ("LAYER_CAUSTIC", light_layer::CAUSTIC),
+    ("LAYER_INDIRECT", light_layer::INDIRECT),
+    ("LIGHT_LAYERS", light_layer::COUNT),
     ("LEDGER_EMITTED", ledger::EMITTED),
     ("LEDGER_DEPOSITED", ledger::DEPOSITED),
     ("LEDGER_DIRECT", ledger::DIRECT),

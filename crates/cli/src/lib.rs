@@ -6,6 +6,7 @@ mod arguments;
 mod chunks;
 mod error;
 mod outputs;
+mod pictures;
 mod progress;
 mod report;
 mod run;

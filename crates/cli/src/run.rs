@@ -14,12 +14,13 @@ use diacaustic::{
     },
 };
 use diacaustic_headless::{Gpu, OpenOptions};
-use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, write_picture, write_statistics};
+use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, write_statistics};
 
 use crate::{
     Arguments, Error,
     chunks::{first_photons, in_chunks, photon_deadline, rounded_photons},
     outputs::Outputs,
+    pictures::write_pictures,
     progress::{Metric, Progress, Seconds},
     report::{Report, Times},
     warnings::about_photons,
@@ -170,9 +171,7 @@ impl Session {
     fn write(&self, outputs: &mut Outputs) -> Result<usize, Error> {
         let film = self.renderer.film()?;
         let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
-        for path in &outputs.pictures {
-            write_picture(path, &picture, &display(&self.scene.output))?;
-        }
+        write_pictures(&outputs.pictures, &picture, &self.renderer.layers()?, &display(&self.scene.output))?;
         match &mut outputs.energy_maps {
             Some(folder) => self.write_energy_maps(folder),
             None => Ok(0),

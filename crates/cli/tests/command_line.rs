@@ -167,6 +167,18 @@ fn without_output_the_scene_chooses_the_files() {
 }
 
 #[test]
+fn layers_stand_beside_the_picture_in_exr() {
+    let workplace = Workplace::new(&format!("output.layers = [\"depth\", \"direct\", \"object_id\"]\n{BALL}"));
+    workplace.render(&["-o", "layers.exr", "-o", "layers.png"]);
+    let names = ["B", "G", "R", "depth.Z", "direct.B", "direct.G", "direct.R", "object_id"];
+    assert_lit(&workplace.exr("layers.exr"), &names);
+    fs::write(workplace.path("plain.toml"), BALL).unwrap();
+    assert_eq!(workplace.run(&["plain.toml", "-o", "plain.png"]).status, Some(0));
+    let png = |name: &str| fs::read(workplace.path(name)).unwrap();
+    assert!(png("layers.png") == png("plain.png"), "layers change the PNG");
+}
+
+#[test]
 fn paths_start_at_the_scene_files_folder() {
     let workplace = Workplace::new("");
     fs::create_dir(workplace.path("scenes")).unwrap();

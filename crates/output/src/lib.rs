@@ -27,7 +27,7 @@ mod tone;
 
 pub use energy_maps::{EnergyMapFolder, Irradiance};
 pub use error::Error;
-pub use open_exr::write_exr;
+pub use open_exr::{Channel, Values, write_exr, write_exr_with_channels};
 pub use picture::{Format, Picture, write_picture};
 pub use png::{Display, write_png};
 pub use replace::check_writable;

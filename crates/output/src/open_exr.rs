@@ -9,12 +9,51 @@ use exr::prelude::{
 
 use crate::{Error, Picture, replace::replace};
 
+/// The comment in a picture's file.
+const RADIANCE: &str = "radiance, W/(m^2 sr)";
+
 /// Writes radiance, W/(m² sr), as OpenEXR: 32-bit float channels R, G, B, linear Rec. 709, compressed without loss (ZIP).
 ///
 /// # Errors
 /// If the pixels are not as many as the size says, or the file cannot be written.
 pub fn write_exr(path: &Path, picture: &Picture<'_>) -> Result<(), Error> {
-    write_layers(path, "radiance, W/(m^2 sr)", &[("", *picture)])
+    write_layers(path, RADIANCE, &[("", *picture)])
+}
+
+/// A channel beside R, G and B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channel<'c> {
+    /// Its name with that of its layer, such as `direct.R`.
+    pub name: &'c str,
+    /// Its values, row by row from the top left.
+    pub values: Values<'c>,
+}
+
+/// The values of a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Values<'v> {
+    /// Numbers, written as 32-bit floats.
+    Float(&'v [f32]),
+    /// Whole numbers, written as 32-bit unsigned integers.
+    Uint(&'v [u32]),
+}
+
+/// Writes radiance as [`write_exr`] does, and further channels of the same size into the same part of the file.
+///
+/// # Errors
+/// If the pixels or a channel's values are not as many as the size says, or the file cannot be written.
+pub fn write_exr_with_channels(path: &Path, picture: &Picture<'_>, further: &[Channel<'_>]) -> Result<(), Error> {
+    picture.check_shape(path)?;
+    let mut list = Vec::from(channels("", picture.pixels));
+    for channel in further {
+        let samples = match channel.values {
+            Values::Float(values) => FlatSamples::F32(values.to_vec()),
+            Values::Uint(values) => FlatSamples::U32(values.to_vec()),
+        };
+        picture.check_count(path, samples.len())?;
+        list.push(AnyChannel { quantize_linearly: false, ..AnyChannel::new(channel.name, samples) });
+    }
+    write_channels(path, RADIANCE, (picture.width as usize, picture.height as usize), list)
 }
 
 /// Writes pictures of one size, each with a prefix to the names of its channels: none, or one that ends in a dot.
@@ -26,6 +65,16 @@ pub(crate) fn write_layers(path: &Path, quantity: &str, layers: &[(&str, Picture
         size = (picture.width as usize, picture.height as usize);
         list.extend(channels(prefix, picture.pixels));
     }
+    write_channels(path, quantity, size, list)
+}
+
+/// Writes channels of one size, in the alphabetical order that the format asks for.
+fn write_channels(
+    path: &Path,
+    quantity: &str,
+    size: (usize, usize),
+    list: Vec<AnyChannel<FlatSamples>>,
+) -> Result<(), Error> {
     let attributes = LayerAttributes {
         comments: Text::new_or_none(quantity),
         software_name: Text::new_or_none(concat!("diacaustic ", env!("CARGO_PKG_VERSION"))),
@@ -79,6 +128,24 @@ mod tests {
             .unwrap();
         assert_eq!(read.layer_data.channel_data.pixels, pixels);
         assert_eq!(read.layer_data.attributes.comments, Text::new_or_none("radiance, W/(m^2 sr)"));
+    }
+
+    #[test]
+    fn further_channels_stand_beside_the_picture() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.exr");
+        let picture = Picture { width: 2, height: 1, pixels: &[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]] };
+        let ids = Channel { name: "object_id", values: Values::Uint(&[7, u32::MAX]) };
+        let depth = Channel { name: "depth.Z", values: Values::Float(&[0.5, 1e10]) };
+        write_exr_with_channels(&path, &picture, &[ids, depth]).unwrap();
+        let read = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
+        let list = &read.layer_data.channel_data.list;
+        let names: Vec<_> = list.iter().map(|channel| channel.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R", "depth.Z", "object_id"]);
+        assert_eq!(list[3].sample_data, FlatSamples::F32(vec![0.5, 1e10]));
+        assert_eq!(list[4].sample_data, FlatSamples::U32(vec![7, u32::MAX]));
+        let short = Channel { name: "short", values: Values::Uint(&[1]) };
+        assert!(matches!(write_exr_with_channels(&path, &picture, &[short]), Err(Error::Shape { found: 1, .. })));
     }
 
     #[test]

@@ -18,10 +18,15 @@ pub struct Picture<'p> {
 impl Picture<'_> {
     /// Refuses a picture whose pixels are not as many as its size says.
     pub(crate) fn check_shape(&self, path: &Path) -> Result<(), Error> {
-        if self.pixels.len() as u64 == u64::from(self.width) * u64::from(self.height) {
+        self.check_count(path, self.pixels.len())
+    }
+
+    /// Refuses values that are not as many as the picture's size says.
+    pub(crate) fn check_count(&self, path: &Path, found: usize) -> Result<(), Error> {
+        if found as u64 == u64::from(self.width) * u64::from(self.height) {
             return Ok(());
         }
-        Err(Error::Shape { path: path.to_owned(), width: self.width, height: self.height, found: self.pixels.len() })
+        Err(Error::Shape { path: path.to_owned(), width: self.width, height: self.height, found })
     }
 }
 

@@ -4,18 +4,20 @@ use diacaustic_scene::{RenderSettings, Scene};
 use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
 
 use crate::{
-    Error, Film,
+    Error, Film, LayerImage,
     energy_map::EnergyMaps,
     features::{Features, Pipelines},
     film::filter_inverse_cdf,
     gpu::{Binding, Gpu, Purpose, wide},
+    layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
     random::combine,
 };
 
 /// The bindings of `shaders/layout/camera_pass.wgsl`.
 const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 3] = [Binding::Texels, Binding::ReadWrite, Binding::ReadWrite];
+const OUTPUTS: [Binding; 5] =
+    [Binding::Texels, Binding::ReadWrite, Binding::ReadWrite, Binding::ReadWrite, Binding::ReadWrite];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
 const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
 /// Paths along each side of the picture that note what they see.
@@ -51,6 +53,7 @@ pub(crate) struct Samples {
     params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
+    layers: LayerSums,
     params_group: wgpu::BindGroup,
     outputs_group: wgpu::BindGroup,
 }
@@ -67,14 +70,16 @@ impl Samples {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
+        let layers = LayerSums::new(gpu, &scene.output.layers, pixels)?;
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
             template: template(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&params]),
-            outputs_group: outputs_group(gpu, pass, maps, &film, &no_sightings),
+            outputs_group: outputs_group(gpu, pass, maps, &film, &layers, &no_sightings),
             params,
             film,
+            layers,
         })
     }
 
@@ -98,12 +103,23 @@ impl Samples {
         let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
-        let outputs = outputs_group(gpu, pass, maps, &film, &sightings);
+        let no_layers = LayerSums::new(gpu, &[], paths)?;
+        let outputs = outputs_group(gpu, pass, maps, &film, &no_layers, &sightings);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         let tiles = SIGHTINGS_SIDE / TILE_SIZE;
         gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
         gpu.read(&sightings, 0..paths)
+    }
+
+    /// What samples accumulate in.
+    pub fn buffers(&self) -> [&wgpu::Buffer; 3] {
+        [&self.film, &self.layers.light, &self.layers.data]
+    }
+
+    /// Bytes on the device.
+    pub fn bytes(&self) -> u64 {
+        self.buffers().iter().map(|buffer| buffer.size()).sum()
     }
 
     /// Submits one sample of every pixel.
@@ -117,11 +133,22 @@ impl Samples {
 
     /// Reads the picture. Blocks.
     pub fn read(&self, gpu: &Gpu, samples: u32) -> Result<Film, Error> {
-        self.rays(gpu)?;
+        let sums = self.sums(gpu)?;
         let (width, height) = (self.template.width, self.template.height);
-        let sums: Vec<[f32; 4]> = gpu.read(&self.film, 1..1 + u64::from(width) * u64::from(height))?;
         let mean = |[r, g, b, count]: [f32; 4]| [r, g, b].map(|sum| sum / count.max(1.0));
         Ok(Film { width, height, samples, radiance: sums.into_iter().map(mean).collect() })
+    }
+
+    /// Reads the layers of the scene's picture. Blocks.
+    pub fn read_layers(&self, gpu: &Gpu, scene: &Scene) -> Result<Vec<LayerImage>, Error> {
+        let counts = self.sums(gpu)?.into_iter().map(|[_, _, _, count]| count as u32).collect();
+        self.layers.read(gpu, scene, counts)
+    }
+
+    /// For each pixel the sum of its samples and their number. Blocks.
+    fn sums(&self, gpu: &Gpu) -> Result<Vec<[f32; 4]>, Error> {
+        self.rays(gpu)?;
+        gpu.read(&self.film, 1..1 + u64::from(self.template.width) * u64::from(self.template.height))
     }
 
     /// Reads the number of rays traced. Blocks.
@@ -139,11 +166,12 @@ fn outputs_group(
     pass: &CameraPass,
     maps: &EnergyMaps,
     film: &wgpu::Buffer,
+    layers: &LayerSums,
     sightings: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
     let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
-    let resources = vec![irradiance, film.as_entire_binding(), sightings.as_entire_binding()];
-    gpu.bind_resources(&pass.outputs_layout, resources)
+    let buffers = [film, sightings, &layers.light, &layers.data].map(|buffer| buffer.as_entire_binding());
+    gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
 }
 
 fn template(scene: &Scene, lights: &Lights) -> CameraParams {

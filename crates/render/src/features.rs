@@ -5,7 +5,11 @@ use std::collections::HashMap;
 use diacaustic_scene::{Material, MaterialKind, RenderSettings, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind};
 
-use crate::{gpu::Gpu, lights::Lights};
+use crate::{
+    gpu::Gpu,
+    layers::{has_data_layers, has_light_layers},
+    lights::Lights,
+};
 
 /// What a kernel must be able to do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -36,6 +40,10 @@ pub(crate) struct Features {
     footprints: bool,
     /// Whether camera paths note which texels they see.
     sightings: bool,
+    /// Light kept apart by how it came.
+    light_layers: bool,
+    /// What pixels show, and how much their samples vary.
+    data_layers: bool,
 }
 
 impl Features {
@@ -56,6 +64,8 @@ impl Features {
             guide: false,
             footprints: false,
             sightings: false,
+            light_layers: has_light_layers(&scene.output.layers),
+            data_layers: has_data_layers(&scene.output.layers),
         }
     }
 
@@ -69,7 +79,7 @@ impl Features {
 
     /// The same for camera paths that note what they see of the energy maps.
     pub fn with_sightings(self) -> Self {
-        Self { sightings: true, ..self }
+        Self { sightings: true, light_layers: false, data_layers: false, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -88,6 +98,8 @@ impl Features {
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),
             ("notes_sightings", f64::from(self.sightings)),
+            ("has_light_layers", f64::from(self.light_layers)),
+            ("has_data_layers", f64::from(self.data_layers)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }

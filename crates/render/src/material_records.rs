@@ -76,6 +76,7 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
             kind: kinds::COATED,
             base: under_coat(albedo, ior).into(),
             ior,
+            extinction: [reflectance_from_within(f64::from(ior)) as f32; 3],
             gloss: width(roughness),
             ..blank
         },
@@ -102,12 +103,9 @@ fn before_pictures(kind: &MaterialKind) -> shaders::Material {
         MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
             shaders::Material { gloss: roughness, ..derived }
         }
-        MaterialKind::Coated { albedo, ior, roughness } => shaders::Material {
-            base: albedo.into(),
-            extinction: [reflectance_from_within(f64::from(ior)) as f32; 3],
-            gloss: roughness,
-            ..derived
-        },
+        MaterialKind::Coated { albedo, roughness, .. } => {
+            shaders::Material { base: albedo.into(), gloss: roughness, ..derived }
+        }
         MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
             shaders::Material { base: base_color.into(), extinction: [metallic; 3], gloss: roughness, ..derived }
         }

@@ -8,8 +8,8 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LightReport, LoopLimit, MapSize, PilotReport, RenderParams, SceneReport,
-    Statistics,
+    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
+    SceneReport, Statistics,
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass},
@@ -120,7 +120,7 @@ impl Renderer {
             bvh_time,
             maps_time,
             pilot,
-            device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.film.size(),
+            device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.bytes(),
             maps: map_sizes(&on_device.maps),
             photon_turns: on_device.photons.turns,
             lights,
@@ -230,6 +230,16 @@ impl Renderer {
         on_device.samples.read(&self.gpu, on_device.sample_count)
     }
 
+    /// Reads the layers that the scene's `output.layers` asks for, in the order of [`Layer::ALL`](diacaustic_scene::Layer::ALL). Blocks until
+    /// all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set, the device fails, or it cut invocations short.
+    pub fn layers(&self) -> Result<Vec<LayerImage>, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        on_device.samples.read_layers(&self.gpu, &on_device.scene)
+    }
+
     /// Reads an object's energy map; none if the object is no receiver. Blocks until all submitted work is done.
     ///
     /// # Errors
@@ -300,7 +310,7 @@ impl Renderer {
     /// If no scene is set.
     pub fn restart(&mut self) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        for buffer in [&on_device.maps.sums, &on_device.photons.ledger, &on_device.samples.film] {
+        for buffer in [&on_device.maps.sums, &on_device.photons.ledger].into_iter().chain(on_device.samples.buffers()) {
             self.gpu.clear(buffer);
         }
         on_device.photon_count = 0;

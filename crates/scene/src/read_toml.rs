@@ -18,8 +18,8 @@ use self::{
     table::{Document, Table},
 };
 use crate::{
-    Camera, Error, Location, OutputSettings, PixelFilter, ReadOptions, RenderSettings, Scene, Subject, ToneCurve,
-    Warning,
+    Camera, Error, Layer, Location, OutputSettings, PixelFilter, ReadOptions, RenderSettings, Scene, Subject,
+    ToneCurve, Warning,
 };
 
 /// A scene from a file, valid, with what is odd about it.
@@ -210,7 +210,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
 }
 
 fn read_output(table: &Table<'_>, base_dir: &Path) -> Result<OutputSettings, Error> {
-    table.allow_only(&["files", "exposure", "tone"])?;
+    table.allow_only(&["files", "exposure", "tone", "layers"])?;
     let default = OutputSettings::default();
     let tones = [("plain", ToneCurve::Plain), ("filmic", ToneCurve::Filmic)];
     let mut files = Vec::new();
@@ -223,5 +223,17 @@ fn read_output(table: &Table<'_>, base_dir: &Path) -> Result<OutputSettings, Err
         exposure: table.get("exposure").map_or(Ok(default.exposure), |entry| entry.number())?,
         tone: table.get("tone").map_or(Ok(default.tone), |entry| entry.choice("tone curve", &tones))?,
         files,
+        layers: table.get("layers").map_or(Ok(Vec::new()), |entry| read_layers(&entry))?,
     })
+}
+
+/// All layers, none, or those of the names listed.
+fn read_layers(entry: &table::Entry<'_>) -> Result<Vec<Layer>, Error> {
+    if !entry.is_array() {
+        let all = entry.boolean_or("true, false or an array of layers' names")?;
+        return Ok(if all { Layer::ALL.to_vec() } else { Vec::new() });
+    }
+    let names = Layer::ALL.map(|layer| (layer.name(), layer));
+    let elements = entry.elements("an array of layers' names")?;
+    elements.iter().map(|element| element.choice("layer", &names)).collect()
 }

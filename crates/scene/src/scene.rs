@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
-use crate::{Camera, Light, Material, Mesh};
+use crate::{Camera, Layer, Light, Material, Mesh};
 
 /// Everything that a render depends on. Built by a reader of this crate or in code; [`Scene::validate`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,6 +111,8 @@ pub struct OutputSettings {
     pub tone: ToneCurve,
     /// Files to write when the command line names none, as the scene file states them, resolved against its folder.
     pub files: Vec<std::path::PathBuf>,
+    /// The layers that are kept beside the picture.
+    pub layers: Vec<Layer>,
 }
 
 /// The tone curve applied before sRGB encoding.
@@ -144,6 +146,6 @@ impl Default for RenderSettings {
 
 impl Default for OutputSettings {
     fn default() -> Self {
-        Self { exposure: 0.0, tone: ToneCurve::default(), files: Vec::new() }
+        Self { exposure: 0.0, tone: ToneCurve::default(), files: Vec::new(), layers: Vec::new() }
     }
 }

@@ -268,6 +268,16 @@ const CASES: &[(&str, &str, &str)] = &[
         r#"x.toml:22:8: [output]: tone: there is no tone curve "aces"; known names: plain, filmic"#,
     ),
     (
+        "exposure = 0.5",
+        r#"layers = ["albedo", "difuse"]"#,
+        r#"x.toml:21:21: [output]: layers[1]: there is no layer "difuse"; known names: emission, direct, caustic, indirect, albedo, normal, depth, position, object_id, material_id, samples, variance"#,
+    ),
+    (
+        "exposure = 0.5",
+        r#"layers = "all""#,
+        r#"x.toml:21:10: [output]: layers: expected true, false or an array of layers' names, found the string "all""#,
+    ),
+    (
         r#"files = ["a.png", "b.exr"]"#,
         r#"files = ["a.png", "b.jpg"]"#,
         "x.toml:20:1: output: files /nowhere/b.jpg has an ending that cannot be written; it must end in .png or .exr",

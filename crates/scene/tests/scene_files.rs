@@ -3,7 +3,7 @@
 use std::{fs, path::Path, sync::Arc};
 
 use diacaustic_scene::{
-    Chart, Dispersion, LightKind, LoadedScene, MaterialKind, PixelFilter, RenderSettings, ToneCurve, Warning,
+    Chart, Dispersion, Layer, LightKind, LoadedScene, MaterialKind, PixelFilter, RenderSettings, ToneCurve, Warning,
     load_scene, parse_scene,
 };
 use glam::Vec3;
@@ -45,7 +45,7 @@ fn every_key_is_read() {
         ambient = 0.5
         camera = { position = [1, 2, 3], look_at = [1, 2, 0], up = [1, 0, 0], vertical_fov = 30, aperture_radius = 0.1, focus_distance = 2 }
         render = { width = 3, height = 4, samples = 5, photons = 6, seed = 7, max_depth = 8, max_bounces = 0, guiding = false, footprints = true, map_size = 9, filter = "blackman-harris", wavelength = 550 }
-        output = { files = ["a.png", "/b/c.EXR"], exposure = -1, tone = "plain" }
+        output = { files = ["a.png", "/b/c.EXR"], exposure = -1, tone = "plain", layers = ["depth", "caustic"] }
         lights = [{ type = "sphere", name = "sun", center = [5, 6, 7], radius = 2, flux = [1, 2, 3] }]
         objects = [{ name = "crate", box = { min = [0, 0, 0], max = [1, 2, 3] }, material = "m", translate = [10, 0, 0], rotate = [90, 0, 90], scale = [1, 2, 1], map_size = 16 }]
         [materials.m]
@@ -77,6 +77,7 @@ fn every_key_is_read() {
     assert_eq!(scene.settings, settings);
     assert_eq!(scene.output.files, [Path::new("base/a.png"), Path::new("/b/c.EXR")]);
     assert_eq!((scene.output.exposure, scene.output.tone), (-1.0, ToneCurve::Plain));
+    assert_eq!(scene.output.layers, [Layer::Depth, Layer::Caustic]);
     let sun = LightKind::Sphere { center: Vec3::new(5.0, 6.0, 7.0), radius: 2.0, flux: Vec3::new(1.0, 2.0, 3.0) };
     assert_eq!((scene.lights[0].name.as_str(), &scene.lights[0].kind), ("sun", &sun));
     let phong = MaterialKind::Phong {

@@ -221,7 +221,12 @@ impl<'d> Entry<'d> {
 
     /// `true` or `false`.
     pub(super) fn boolean(&self) -> Result<bool, Error> {
-        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type("true or false")) };
+        self.boolean_or("true or false")
+    }
+
+    /// A switch where something else, which `expected` names as well, could stand.
+    pub(super) fn boolean_or(&self, expected: &'static str) -> Result<bool, Error> {
+        let DeValue::Boolean(boolean) = self.value.get_ref() else { return Err(self.wrong_type(expected)) };
         Ok(*boolean)
     }
 

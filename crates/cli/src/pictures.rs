@@ -1,0 +1,40 @@
+//! Pictures and their layers, as files.
+
+use std::path::PathBuf;
+
+use diacaustic::{LayerImage, LayerValues};
+use diacaustic_output::{Channel, Display, Format, Picture, Values, write_exr_with_channels, write_png};
+
+use crate::Error;
+
+/// Writes a picture in the formats that the files' endings stand for; OpenEXR holds its layers as well.
+pub(crate) fn write_pictures(
+    paths: &[PathBuf],
+    picture: &Picture<'_>,
+    layers: &[LayerImage],
+    display: &Display,
+) -> Result<(), Error> {
+    let names = channel_names(layers);
+    let values = layers.iter().flat_map(|layer| &layer.channels).map(|channel| match &channel.values {
+        LayerValues::Float(values) => Values::Float(values),
+        LayerValues::Uint(values) => Values::Uint(values),
+    });
+    let channels: Vec<_> = names.iter().zip(values).map(|(name, values)| Channel { name, values }).collect();
+    for path in paths {
+        match Format::of(path)? {
+            Format::Exr => write_exr_with_channels(path, picture, &channels)?,
+            Format::Png => write_png(path, picture, display)?,
+        }
+    }
+    Ok(())
+}
+
+/// The names of all channels in OpenEXR: the layer's and the channel's, with a dot between.
+fn channel_names(layers: &[LayerImage]) -> Vec<String> {
+    let of_layer = |layer: &LayerImage| -> Vec<String> {
+        let name =
+            |channel: &str| if channel.is_empty() { layer.name.clone() } else { format!("{}.{channel}", layer.name) };
+        layer.channels.iter().map(|channel| name(channel.name)).collect()
+    };
+    layers.iter().flat_map(of_layer).collect()
+}
