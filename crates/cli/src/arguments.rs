@@ -10,6 +10,8 @@ Examples:
       writes the same picture in two formats, with a finer caustic
   diacaustic teapot.toml --time-limit 60 --energy-maps maps --stats teapot.json
       stops after a minute; writes irradiance and statistics beside the picture
+  diacaustic vase.glb --floor
+      renders a glTF file through its own camera and by its own lights, if it has any, on a floor
 
 Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails.
 WGPU_BACKEND and WGPU_ADAPTER_NAME choose the GPU.";
@@ -21,13 +23,13 @@ WGPU_BACKEND and WGPU_ADAPTER_NAME choose the GPU.";
 #[derive(Clone, Debug, PartialEq, clap::Parser)]
 #[command(name = "diacaustic", version, after_help = EXAMPLES, max_term_width = 110)]
 pub struct Arguments {
-    /// The scene file (TOML)
+    /// The scene: a scene file (.toml) or a glTF file (.gltf, .glb)
     pub scene: PathBuf,
 
     /// A picture to write; repeatable. The ending chooses the format: .exr (32-bit float radiance) or .png
     ///
     /// Without this option, the files that the scene names are written; if it names none, a PNG with the scene file's name in the
-    /// current folder.
+    /// current folder (NAME.render.png for a .gltf file, whose own pictures may lie there).
     #[arg(short, long = "output", value_name = "FILE")]
     pub outputs: Vec<PathBuf>,
 
@@ -59,6 +61,14 @@ pub struct Arguments {
     /// of photons and one sample, however short the time.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     pub time_limit: Option<Duration>,
+
+    /// Lay a matt floor under a glTF file's scene, which catches its caustics
+    #[arg(long)]
+    pub floor: bool,
+
+    /// Read files that a glTF or OBJ file names outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
 
     /// Print nothing but errors
     #[arg(short, long)]
@@ -112,7 +122,7 @@ mod tests {
     fn all_flags_are_read() {
         let read = parse(
             "a.toml --output a.exr --output a.png --stats s.json --energy-maps maps --photons 1_000_000 --samples 8 \
-             --seed 7 --time-limit 2.5 --quiet",
+             --seed 7 --time-limit 2.5 --floor --allow-outside --quiet",
         );
         let expected = Arguments {
             scene: "a.toml".into(),
@@ -123,6 +133,8 @@ mod tests {
             samples: Some(8),
             seed: Some(7),
             time_limit: Some(Duration::from_millis(2500)),
+            floor: true,
+            allow_outside: true,
             quiet: true,
         };
         assert_eq!(read.unwrap(), expected);

@@ -48,7 +48,8 @@ impl Outputs {
 
 fn default_picture(scene: &Path) -> PathBuf {
     let mut name = scene.file_stem().unwrap_or("picture".as_ref()).to_owned();
-    name.push(".png");
+    let is_gltf_text = scene.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
+    name.push(if is_gltf_text { ".render.png" } else { ".png" });
     PathBuf::from(name)
 }
 

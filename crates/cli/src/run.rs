@@ -8,7 +8,10 @@ use std::{
 
 use diacaustic::{
     Renderer, RendererOptions, SceneReport,
-    scene::{LoadedScene, OutputSettings, Scene, ToneCurve, Warning, load_scene},
+    scene::{
+        LoadedScene, OutputSettings, ReadOptions, Scene, StudioOptions, ToneCurve, Warning, load_gltf_scene,
+        load_scene_with,
+    },
 };
 use diacaustic_headless::{Gpu, OpenOptions};
 use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, write_statistics};
@@ -32,11 +35,14 @@ use crate::{
 pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.quiet);
-    let LoadedScene { mut scene, warnings } = load_scene(&arguments.scene)?;
+    let LoadedScene { mut scene, warnings } = load(arguments)?;
     override_settings(&mut scene, arguments);
     let mut outputs = Outputs::choose(arguments, &scene.output.files)?;
     for warning in &warnings {
         progress.warn(warning);
+    }
+    if is_gltf(&arguments.scene) && warnings.contains(&Warning::NoReceiver) {
+        progress.warn("--floor adds a floor, which shows caustics");
     }
     let mut times = Times { load: start.elapsed(), ..Times::default() };
 
@@ -54,6 +60,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     }
     progress.say(Written { outputs: &outputs, maps, time: start.elapsed() });
     Ok(())
+}
+
+fn load(arguments: &Arguments) -> Result<LoadedScene, Error> {
+    let read = ReadOptions { allow_outside: arguments.allow_outside };
+    if is_gltf(&arguments.scene) {
+        return Ok(load_gltf_scene(&arguments.scene, &StudioOptions { floor: arguments.floor, read })?);
+    }
+    if arguments.floor {
+        return Err(Error::FloorOfSceneFile(arguments.scene.clone()));
+    }
+    Ok(load_scene_with(&arguments.scene, read)?)
+}
+
+/// Whether a file is glTF by its name.
+pub(crate) fn is_gltf(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ["gltf", "glb"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 fn override_settings(scene: &mut Scene, arguments: &Arguments) {

@@ -422,3 +422,42 @@ fn an_open_mesh_of_glass_is_told_with_its_open_edges() {
     fs::write(workplace.path("open.obj"), open).unwrap();
     assert_warns(&workplace, &["object \"ball\"", "not closed (3 open edges)", "close the mesh"]);
 }
+
+/// A glTF file of one triangle in text, which is not metal.
+const TRIANGLE: &str = r#"{
+    "asset": { "version": "2.0" },
+    "buffers": [{ "byteLength": 36, "uri": "data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA" }],
+    "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+    "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+    "materials": [{ "pbrMetallicRoughness": { "metallicFactor": 0 } }],
+    "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+    "nodes": [{ "mesh": 0, "name": "leaf" }]
+}"#;
+
+#[test]
+fn gltf_files_render_by_themselves() {
+    let place = Workplace::new(BALL);
+    fs::write(place.path("a.gltf"), TRIANGLE).unwrap();
+    let arguments = ["a.gltf", "--floor", "--samples", "1", "--photons", "1000", "--energy-maps", "maps"];
+    let outcome = place.run(&arguments);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+    assert!(place.path("maps/leaf.exr").is_file() && place.path("maps/floor.exr").is_file());
+    let picture = image::open(place.path("a.render.png")).unwrap().into_rgb8();
+    let middle = picture.get_pixel(picture.width() / 2, picture.height() / 2);
+    assert!(middle.0.iter().all(|channel| *channel > 40), "{middle:?}");
+}
+
+#[test]
+fn bad_gltf_files_are_refused() {
+    let place = Workplace::new(BALL);
+    fs::write(place.path("a.gltf"), TRIANGLE.replace("\"count\": 3", "\"count\": 4")).unwrap();
+    place.run(&["a.gltf"]).assert_refused(2, &["a.gltf: accessors[0]: has 4 elements of 12 bytes"]);
+    fs::write(place.path("b.gltf"), TRIANGLE.replace("data:;base64,", "../")).unwrap();
+    place.run(&["b.gltf"]).assert_refused(2, &["b.gltf: buffers[0]: names the file", "give --allow-outside"]);
+    place
+        .run(&["b.gltf", "--allow-outside"])
+        .assert_refused(2, &["b.gltf: buffers[0]: names the file", "cannot be read"]);
+    fs::write(place.path("c.glb"), "glTF").unwrap();
+    place.run(&["c.glb"]).assert_refused(2, &["c.glb: the file is cut off"]);
+    place.run(&["scene.toml", "--floor"]).assert_refused(2, &["--floor goes with a glTF file"]);
+}

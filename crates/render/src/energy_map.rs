@@ -1,5 +1,7 @@
 //! Energy maps: where they lie in the device's buffers, how they become irradiance, and how the application reads them.
 
+use std::collections::BinaryHeap;
+
 use diacaustic_scene::{Camera, Object, RenderSettings, Scene};
 use diacaustic_shaders::{RESOLVE, ResolveParams, WORKGROUP_SIZE};
 use diacaustic_surface::{MapLayout, WorldTriangle, texel_areas};
@@ -89,25 +91,21 @@ fn default_size(camera: &Camera, settings: &RenderSettings, object: &Object) -> 
     texels.clamp(*DEFAULT_SIZES.start(), *DEFAULT_SIZES.end()).ceil() as u32
 }
 
+/// Texels of a map that is small enough.
+const SMALLEST_MAP: u64 = 64;
+
 /// Halves the largest map whose size nobody chose until all fit.
 fn shrink_to_budget(scene: &Scene, layouts: &mut [Option<MapLayout>], budget: u64) {
-    loop {
-        let total: u64 = layouts.iter().flatten().map(MapLayout::texel_count).sum();
-        if total * TEXEL_BYTES <= budget {
-            return;
-        }
-        let largest = layouts
-            .iter_mut()
-            .zip(&scene.objects)
-            .filter(|(_, object)| object.map_size.or(scene.settings.map_size).is_none())
-            .filter_map(|(layout, object)| layout.as_mut().map(|layout| (layout, object)))
-            .max_by_key(|(layout, _)| layout.texel_count());
-        match largest {
-            Some((layout, object)) if layout.texel_count() > 64 => {
-                *layout = MapLayout::new(object, layout.width.max(layout.height) / 2);
-            }
-            _ => return,
-        }
+    let mut total: u64 = layouts.iter().flatten().map(MapLayout::texel_count).sum();
+    let is_free = |index: usize| scene.objects[index].map_size.or(scene.settings.map_size).is_none();
+    let sized = layouts.iter().enumerate().filter_map(|(index, layout)| Some((layout.as_ref()?.texel_count(), index)));
+    let mut largest_first: BinaryHeap<_> = sized.filter(|&(_, index)| is_free(index)).collect();
+    while total * TEXEL_BYTES > budget {
+        let Some((texels, index)) = largest_first.pop().filter(|&(texels, _)| texels > SMALLEST_MAP) else { return };
+        let Some(layout) = &mut layouts[index] else { continue };
+        *layout = MapLayout::new(&scene.objects[index], layout.width.max(layout.height) / 2);
+        total -= texels - layout.texel_count();
+        largest_first.push((layout.texel_count(), index));
     }
 }
 

@@ -176,6 +176,16 @@ pub enum Error {
         /// What is wrong and what would be right.
         problem: String,
     },
+    /// A glTF file makes no sense, or asks for what is not read.
+    #[error("{}: {}{problem}", path.display(), place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
+    Gltf {
+        /// The file.
+        path: PathBuf,
+        /// The entry of the file at fault, such as `meshes[3] "Cup"`, if one is.
+        place: Option<String>,
+        /// What is wrong and what would be right.
+        problem: String,
+    },
     /// [`Scene::validate`](crate::Scene::validate) refuses the scene.
     #[error("{}{subject}: {key} {problem}", at.as_ref().map(|at| format!("{at}: ")).unwrap_or_default())]
     Invalid {
@@ -283,6 +293,16 @@ pub enum Warning {
         /// The OBJ file.
         path: PathBuf,
         /// What is wrong with the library.
+        problem: String,
+    },
+    /// Something in a glTF file is not shown as it is meant.
+    #[error("{}: {}{problem}", path.display(), place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
+    Gltf {
+        /// The file.
+        path: PathBuf,
+        /// The entry of the file, such as `materials[3] "Cup"`, if one is concerned.
+        place: Option<String>,
+        /// What is not shown.
         problem: String,
     },
     /// A material from an MTL file has a texture, which is not read.

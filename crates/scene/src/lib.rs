@@ -1,6 +1,6 @@
-//! Scene description for diacaustic: TOML, OBJ and primitives, validated. No GPU.
+//! Scene description for diacaustic: TOML, OBJ, glTF and primitives, validated. No GPU.
 //!
-//! [`load_scene`] reads a scene file and the meshes and images that it names. A [`Scene`] can be built in code as well;
+//! [`load_scene`] reads a scene file and the meshes and images that it names, [`load_gltf_scene`] a glTF file by itself. A [`Scene`] can be built in code as well;
 //! [`Scene::validate`] then checks it the same way.
 //!
 //! ```
@@ -45,6 +45,8 @@ mod camera;
 mod dispersion;
 mod environment_image;
 mod error;
+mod folder;
+mod gltf;
 mod layer;
 mod light;
 mod light_groups;
@@ -59,6 +61,7 @@ mod read_toml;
 mod scene;
 mod solid;
 mod spectrum;
+mod studio;
 mod substances;
 mod texture;
 mod texture_image;
@@ -68,6 +71,8 @@ pub use camera::Camera;
 pub use dispersion::{Dispersion, STATED_WAVELENGTH};
 pub use environment_image::load_environment;
 pub use error::{Error, Location, Subject, Warning};
+pub use folder::ReadOptions;
+pub use gltf::{GltfCamera, GltfFile, GltfObject, load_gltf, parse_gltf};
 pub use layer::Layer;
 pub use light::{Light, LightKind};
 pub use light_groups::{BACKGROUND_GROUP, DEFAULT_LIGHT_GROUP, LightGroups, MOST_LIGHT_GROUPS};
@@ -76,11 +81,12 @@ pub use mesh::{Chart, Mesh};
 pub use metals::{METALS, Metal, metal};
 pub use obj::{ObjFile, load_obj, parse_obj};
 pub use radiance_map::RadianceMap;
-pub use read_toml::{LoadedScene, load_scene, parse_scene};
+pub use read_toml::{LoadedScene, load_scene, load_scene_with, parse_scene};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
 pub use spectrum::{
     LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,
 };
+pub use studio::{StudioOptions, load_gltf_scene};
 pub use substances::{SUBSTANCES, Substance, substance};
 pub use texture::{NormalMap, Texture, TextureFilter, TextureImage, Textures, Wrap};
 pub use texture_image::{ColorSpace, Picture, load_texture};

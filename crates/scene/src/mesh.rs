@@ -1,6 +1,11 @@
 //! Indexed triangle meshes in object space.
 
+use std::cmp::Ordering;
+
 use glam::{Vec2, Vec3};
+
+/// The square of the length below which a normal is taken for a missing one.
+const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
 
 /// An indexed triangle mesh in its object's frame, in metres.
 ///
@@ -50,30 +55,103 @@ impl Mesh {
         (b - a).cross(c - a)
     }
 
-    /// The number of edges that do not join exactly two triangles of opposite direction, after welding vertices
-    /// of equal position. 0 for a closed, consistently wound surface.
-    pub fn open_edges(&self) -> usize {
-        let mut ids = std::collections::HashMap::new();
-        let welded: Vec<u32> = self
-            .positions
-            .iter()
-            .map(|p| {
-                // Adding 0 turns -0 into +0, so that both weld.
-                let key = (*p + Vec3::ZERO).to_array().map(f32::to_bits);
-                let next = ids.len() as u32;
-                *ids.entry(key).or_insert(next)
-            })
-            .collect();
-        let mut balance = std::collections::HashMap::<(u32, u32), (i32, u32)>::new();
-        for corners in &self.triangles {
-            let v = corners.map(|vertex| welded[vertex as usize]);
-            for (a, b) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
-                let (key, direction) = if a < b { ((a, b), 1) } else { ((b, a), -1) };
-                let entry = balance.entry(key).or_default();
-                entry.0 += direction;
-                entry.1 += 1;
+    /// Normalises the normals; corners without a usable one get a vertex of their own with the facet's normal.
+    /// Returns the number of those corners.
+    pub(crate) fn replace_unusable_normals(&mut self) -> usize {
+        let usable: Vec<_> =
+            self.normals.iter().map(|normal| normal.length_squared() > SHORTEST_NORMAL_SQUARED).collect();
+        let mut is_taken = usable.clone();
+        for normal in &mut self.normals {
+            *normal = normal.normalize_or(Vec3::Z);
+        }
+        let mut replaced = 0;
+        for triangle in 0..self.triangles.len() {
+            let facet = self.double_area_normal(triangle).normalize_or(Vec3::Z);
+            for corner in 0..3 {
+                let vertex = self.triangles[triangle][corner] as usize;
+                if usable.get(vertex).copied().unwrap_or(true) {
+                    continue;
+                }
+                replaced += 1;
+                if std::mem::replace(&mut is_taken[vertex], true) {
+                    self.triangles[triangle][corner] = self.positions.len() as u32;
+                    self.positions.push(self.positions[vertex]);
+                    self.uvs.extend(self.uvs.get(vertex).copied());
+                    self.normals.push(facet);
+                } else {
+                    self.normals[vertex] = facet;
+                }
             }
         }
-        balance.values().filter(|&&(sum, uses)| sum != 0 || uses % 2 != 0).count()
+        replaced
+    }
+
+    /// The number of edges that are not passed equally often in both directions, after welding vertices of equal position. 0 for a
+    /// closed, consistently wound surface, also with triangles that welding makes a line or a point of.
+    pub fn open_edges(&self) -> usize {
+        let welded = self.welded_vertices();
+        let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
+        for corners in &self.triangles {
+            let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let edge = u64::from(from.min(to)) << 32 | u64::from(from.max(to));
+                match from.cmp(&to) {
+                    Ordering::Less => upwards.push(edge),
+                    Ordering::Greater => downwards.push(edge),
+                    Ordering::Equal => {}
+                }
+            }
+        }
+        upwards.sort_unstable();
+        downwards.sort_unstable();
+        unequal_counts(&upwards, &downwards)
+    }
+
+    /// For each vertex, the first in order of those that have its position.
+    fn welded_vertices(&self) -> Vec<u32> {
+        // Adding 0 turns -0 into +0, so that both weld.
+        let key = |vertex: u32| (self.positions[vertex as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+        let mut order: Vec<u32> = (0..self.positions.len() as u32).collect();
+        order.sort_unstable_by_key(|vertex| (key(*vertex), *vertex));
+        let mut welded = vec![0; order.len()];
+        for same in order.chunk_by(|a, b| key(*a) == key(*b)) {
+            same.iter().for_each(|vertex| welded[*vertex as usize] = same[0]);
+        }
+        welded
+    }
+}
+
+/// How many of the values in two sorted lists are not equally often in both.
+fn unequal_counts(first: &[u64], second: &[u64]) -> usize {
+    let (mut runs, mut others) = (first.chunk_by(u64::eq).peekable(), second.chunk_by(u64::eq).peekable());
+    let mut count = 0;
+    loop {
+        let order = match (runs.peek(), others.peek()) {
+            (Some(run), Some(other)) => run[0].cmp(&other[0]),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => return count,
+        };
+        let run = if order.is_le() { runs.next() } else { None };
+        let other = if order.is_ge() { others.next() } else { None };
+        count += usize::from(run.map(<[u64]>::len) != other.map(<[u64]>::len));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn open_edges_are_counted() {
+        let mut mesh = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+        assert_eq!(mesh.open_edges(), 0);
+        let removed = mesh.triangles.pop().unwrap();
+        assert_eq!(mesh.open_edges(), 3);
+        // Triangles without area close nothing and open nothing.
+        mesh.triangles.extend([[0, 0, 1], [2, 2, 2]]);
+        assert_eq!(mesh.open_edges(), 3);
+        mesh.triangles.push([removed[1], removed[0], removed[2]]);
+        assert_eq!(mesh.open_edges(), 3);
     }
 }

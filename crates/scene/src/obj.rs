@@ -8,10 +8,7 @@ use std::{collections::HashMap, fs, path::Path};
 use glam::{Vec2, Vec3};
 
 use self::check::{Checked, check};
-use crate::{Chart, Error, Material, Mesh, Warning};
-
-/// The square of the length below which a normal is taken for a missing one.
-const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
+use crate::{Chart, Error, Material, Mesh, ReadOptions, Warning};
 
 /// A mesh from an OBJ file, with what its material libraries say.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,17 +30,18 @@ pub struct ObjFile {
 /// is a dielectric.
 ///
 /// # Errors
-/// If the OBJ file cannot be read or makes no sense. A fault of a material library is a warning.
-pub fn load_obj(path: &Path) -> Result<ObjFile, Error> {
+/// If the OBJ file cannot be read or makes no sense. A fault of a material library is a warning, also that it lies outside the file's
+/// folder where the options do not allow it.
+pub fn load_obj(path: &Path, options: ReadOptions) -> Result<ObjFile, Error> {
     let bytes = fs::read(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
-    parse_obj(&String::from_utf8_lossy(&bytes), path)
+    parse_obj(&String::from_utf8_lossy(&bytes), path, options)
 }
 
 /// Reads a mesh from OBJ text; material libraries are sought beside `path`, which messages name.
 ///
 /// # Errors
 /// If the text makes no sense. A fault of a material library is a warning.
-pub fn parse_obj(text: &str, path: &Path) -> Result<ObjFile, Error> {
+pub fn parse_obj(text: &str, path: &Path, options: ReadOptions) -> Result<ObjFile, Error> {
     let checked = check(text, path)?;
     let mut mesh = merge_models(read_models(&checked, path)?);
     let mut warnings = Vec::new();
@@ -54,7 +52,7 @@ pub fn parse_obj(text: &str, path: &Path) -> Result<ObjFile, Error> {
     if checked.slots.iter().any(|slot| !slot.is_empty()) {
         mesh.material_slots = checked.slots;
     }
-    let materials = mtl::slot_materials(&mesh.material_slots, &checked.libraries, path, &mut warnings);
+    let materials = mtl::slot_materials(&mesh.material_slots, &checked.libraries, path, options, &mut warnings);
     if mesh.material_slots.len() < 2 {
         mesh.triangle_slots.clear();
     }
@@ -110,38 +108,8 @@ fn settle_optional_data(mesh: &mut Mesh, checked: &Checked, path: &Path, warning
         mesh.normals.clear();
         return;
     }
-    let replaced = replace_unusable_normals(mesh);
+    let replaced = mesh.replace_unusable_normals();
     if replaced > 0 {
         warnings.push(Warning::ReplacedNormals { path: path.to_owned(), count: replaced });
     }
-}
-
-/// Normalises the normals; corners without a usable one get a vertex of their own with the facet's normal.
-/// Returns the number of those corners.
-fn replace_unusable_normals(mesh: &mut Mesh) -> usize {
-    let usable: Vec<_> = mesh.normals.iter().map(|normal| normal.length_squared() > SHORTEST_NORMAL_SQUARED).collect();
-    let mut is_taken = usable.clone();
-    for normal in &mut mesh.normals {
-        *normal = normal.normalize_or(Vec3::Z);
-    }
-    let mut replaced = 0;
-    for triangle in 0..mesh.triangles.len() {
-        let facet = mesh.double_area_normal(triangle).normalize_or(Vec3::Z);
-        for corner in 0..3 {
-            let vertex = mesh.triangles[triangle][corner] as usize;
-            if usable.get(vertex).copied().unwrap_or(true) {
-                continue;
-            }
-            replaced += 1;
-            if std::mem::replace(&mut is_taken[vertex], true) {
-                mesh.triangles[triangle][corner] = mesh.positions.len() as u32;
-                mesh.positions.push(mesh.positions[vertex]);
-                mesh.uvs.extend(mesh.uvs.get(vertex).copied());
-                mesh.normals.push(facet);
-            } else {
-                mesh.normals[vertex] = facet;
-            }
-        }
-    }
-    replaced
 }

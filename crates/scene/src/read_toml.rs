@@ -18,7 +18,8 @@ use self::{
     table::{Document, Table},
 };
 use crate::{
-    Camera, Error, Layer, Location, OutputSettings, PixelFilter, RenderSettings, Scene, Subject, ToneCurve, Warning,
+    Camera, Error, Layer, Location, OutputSettings, PixelFilter, ReadOptions, RenderSettings, Scene, Subject,
+    ToneCurve, Warning,
 };
 
 /// A scene from a file, valid, with what is odd about it.
@@ -35,8 +36,17 @@ pub struct LoadedScene {
 /// # Errors
 /// If the file or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
+    load_scene_with(path, ReadOptions::default())
+}
+
+/// Reads a scene as [`load_scene`] does, with options. They concern what glTF and OBJ files name; the scene file itself may name
+/// files anywhere.
+///
+/// # Errors
+/// As [`load_scene`].
+pub fn load_scene_with(path: &Path, options: ReadOptions) -> Result<LoadedScene, Error> {
     let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
-    parse_scene(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string())
+    parse(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
 }
 
 /// Reads a scene from TOML text. Relative paths in it start at `base_dir`; messages call the text `file_name`.
@@ -44,11 +54,23 @@ pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
 /// # Errors
 /// If the text or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<LoadedScene, Error> {
+    parse(text, base_dir, file_name, ReadOptions::default())
+}
+
+fn parse(text: &str, base_dir: &Path, file_name: &str, options: ReadOptions) -> Result<LoadedScene, Error> {
     let document = Document::parse(text, file_name)?;
     let sections = Sections::split(document.root())?;
-    let (scene, mut warnings) = sections.read(base_dir)?;
-    warnings.extend(scene.validate().map_err(|error| sections.locate(error))?);
+    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options)?;
+    warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
     Ok(LoadedScene { scene, warnings })
+}
+
+/// A scene that is yet to be validated.
+struct ReadScene {
+    scene: Scene,
+    warnings: Vec<Warning>,
+    /// For each object, the number of its table.
+    tables_of_objects: Vec<usize>,
 }
 
 /// The tables of a scene file.
@@ -78,7 +100,7 @@ impl<'d> Sections<'d> {
         })
     }
 
-    fn read(&self, base_dir: &Path) -> Result<(Scene, Vec<Warning>), Error> {
+    fn read(&self, base_dir: &Path, options: ReadOptions) -> Result<ReadScene, Error> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
         let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
         let mut scene = Scene {
@@ -91,28 +113,29 @@ impl<'d> Sections<'d> {
             materials: Vec::new(),
             objects: Vec::new(),
         };
-        let mut reader = ObjectReader::new(base_dir, materials);
-        scene.objects = reader.read_all(&self.objects)?;
+        let mut reader = ObjectReader::new(base_dir, options, materials);
+        let (tables_of_objects, objects) = reader.read_all(&self.objects)?.into_iter().unzip();
+        scene.objects = objects;
         scene.materials = reader.materials;
-        Ok((scene, reader.warnings))
+        Ok(ReadScene { scene, warnings: reader.warnings, tables_of_objects })
     }
 
     /// Adds to an error of [`Scene::validate`] where the file sets what is at fault.
-    fn locate(&self, mut error: Error) -> Error {
+    fn locate(&self, mut error: Error, tables_of_objects: &[usize]) -> Error {
         if let Error::Invalid { at, subject, key, .. } = &mut error {
-            *at = Some(self.location_of(subject, key));
+            *at = Some(self.location_of(subject, key, tables_of_objects));
         }
         error
     }
 
-    fn location_of(&self, subject: &Subject, key: &str) -> Location {
+    fn location_of(&self, subject: &Subject, key: &str, tables_of_objects: &[usize]) -> Location {
         let table = match subject {
             Subject::Camera => Some(&self.camera),
             Subject::Render => self.render.as_ref(),
             Subject::Output => self.output.as_ref(),
             Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),
             Subject::Light { index, .. } => self.lights.get(*index),
-            Subject::Object { index, .. } => self.objects.get(*index),
+            Subject::Object { index, .. } => tables_of_objects.get(*index).and_then(|table| self.objects.get(*table)),
             Subject::Scene => None,
         };
         table.unwrap_or(&self.root).location_of(key)

@@ -2,7 +2,7 @@
 
 use std::{
     fs::File,
-    io::{BufRead, BufReader, Read, Seek},
+    io::{BufRead, BufReader, Cursor, Read, Seek},
     path::Path,
     sync::Arc,
 };
@@ -57,6 +57,29 @@ pub fn load_texture(path: &Path, color_space: ColorSpace) -> Result<Picture, Err
     let mut reader = BufReader::new(file);
     check_content(&mut reader, format).map_err(error)?;
     decode(reader, format, color_space).map_err(error)
+}
+
+/// Reads a PNG or JPEG picture of at most `most_texels` from bytes, in whatever format they begin as.
+///
+/// # Errors
+/// What is wrong with the picture; the size is checked before memory is taken for the texels.
+pub(crate) fn decode_texture(bytes: &[u8], color_space: ColorSpace, most_texels: u64) -> Result<Picture, String> {
+    let format = match image::guess_format(bytes) {
+        Ok(format @ (ImageFormat::Png | ImageFormat::Jpeg)) => format,
+        Ok(other) => return Err(format!("is {} file; it must be PNG or JPEG", with_article(other))),
+        Err(_) => return Err("is neither PNG nor JPEG by its content".to_owned()),
+    };
+    let (width, height) = match format {
+        ImageFormat::Png => PngDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
+        _ => JpegDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
+    };
+    check_size(width, height)?;
+    if u64::from(width) * u64::from(height) > most_texels {
+        return Err(format!(
+            "has {width} × {height} texels, but only {most_texels} more are read of one file's pictures"
+        ));
+    }
+    decode(Cursor::new(bytes), format, color_space)
 }
 
 /// Whether a file of this name holds linear numbers rather than sRGB's.

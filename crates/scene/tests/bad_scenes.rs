@@ -423,7 +423,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "sphere = { center = [0, 0.4, 0], radius = 0.3, subdivisions = 4 }",
         r#"mesh = "a.stl""#,
-        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.stl; meshes are read from OBJ files, whose names end in .obj"#,
+        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.stl; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb"#,
     ),
     (
         "rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }",

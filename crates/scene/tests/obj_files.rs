@@ -2,17 +2,19 @@
 
 use std::{fs, path::Path};
 
-use diacaustic_scene::{Chart, Dispersion, Material, MaterialKind, Mesh, ObjFile, Warning, load_obj, parse_obj};
+use diacaustic_scene::{
+    Chart, Dispersion, Material, MaterialKind, Mesh, ObjFile, ReadOptions, Warning, load_obj, parse_obj,
+};
 use glam::{Vec2, Vec3};
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 fn parse(text: &str) -> ObjFile {
-    parse_obj(text, Path::new("/nowhere/m.obj")).unwrap()
+    parse_obj(text, Path::new("/nowhere/m.obj"), ReadOptions::default()).unwrap()
 }
 
 fn error(text: &str) -> String {
-    parse_obj(text, Path::new("m.obj")).unwrap_err().to_string()
+    parse_obj(text, Path::new("m.obj"), ReadOptions::default()).unwrap_err().to_string()
 }
 
 /// The materials and warnings of a file whose one face has the MTL material `m`, with these lines.
@@ -21,7 +23,7 @@ fn material(lines: &str) -> (Option<Material>, Vec<Warning>) {
     fs::write(folder.path().join("my lib.mtl"), format!("# a library\n\n  newmtl m\n{lines}")).unwrap();
     let path = folder.path().join("m.obj");
     fs::write(&path, format!("mtllib my lib.mtl\n{TRIANGLE}usemtl m\nf 1 2 3\n")).unwrap();
-    let file = load_obj(&path).unwrap();
+    let file = load_obj(&path, ReadOptions::default()).unwrap();
     (file.materials[0].clone(), file.warnings)
 }
 
@@ -145,7 +147,7 @@ fn faults_are_named_with_their_line() {
     for (text, message) in cases {
         assert_eq!(error(text), message, "for {text:?}");
     }
-    let missing = load_obj(Path::new("/nowhere/m.obj")).unwrap_err().to_string();
+    let missing = load_obj(Path::new("/nowhere/m.obj"), ReadOptions::default()).unwrap_err().to_string();
     assert_eq!(missing, "/nowhere/m.obj: the file cannot be read: No such file or directory (os error 2)");
 }
 
@@ -220,4 +222,18 @@ fn mtl_faults_are_warnings_with_their_line() {
     let (_, warnings) = material("map_Kd a.png\nbump b.png\n");
     let maps = "map_Kd, bump".to_owned();
     assert_eq!(warnings, [Warning::IgnoredTextures { material: "m".to_owned(), maps }]);
+}
+
+#[test]
+fn material_libraries_outside_the_folder_are_read_on_demand_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("inner")).unwrap();
+    fs::write(folder.path().join("m.mtl"), "newmtl m\nKd 1 0 0\n").unwrap();
+    let path = folder.path().join("inner/m.obj");
+    fs::write(&path, "mtllib ../m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n").unwrap();
+    let load = |allow_outside| load_obj(&path, ReadOptions { allow_outside }).unwrap();
+    assert!(load(true).materials[0].is_some() && load(true).warnings.is_empty());
+    assert!(load(false).materials[0].is_none());
+    let warning = load(false).warnings[0].to_string();
+    assert!(warning.contains("names the file \"../m.mtl\", which lies outside the folder"), "{warning}");
 }

@@ -1,7 +1,7 @@
 //! Bounding spheres of casters: where lights aim.
 
 use diacaustic_scene::{LightKind, Scene};
-use glam::Vec3;
+use glam::{UVec3, Vec3};
 
 use crate::WorldTriangle;
 
@@ -67,8 +67,14 @@ pub fn caster_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<Bounding
         .collect()
 }
 
-/// Merges the two spheres whose union has the least radius until at most `limit` remain.
+/// Spheres among which every pair is looked at; more are first merged with their neighbours along a Z-order curve.
+const MOST_PAIRED: usize = 128;
+
+/// Merges spheres until at most `limit` remain: of [`MOST_PAIRED`] and fewer the two whose union has the least radius, one after the other.
 pub fn merge_spheres(mut spheres: Vec<BoundingSphere>, limit: usize) -> Vec<BoundingSphere> {
+    if spheres.len() > MOST_PAIRED.max(limit) {
+        spheres = merge_neighbours(spheres, MOST_PAIRED.max(limit));
+    }
     while spheres.len() > limit.max(1) {
         let mut best = (f32::INFINITY, 0, 1);
         for i in 0..spheres.len() {
@@ -86,9 +92,37 @@ pub fn merge_spheres(mut spheres: Vec<BoundingSphere>, limit: usize) -> Vec<Boun
     spheres
 }
 
+/// Merges spheres in runs along a Z-order curve through their centres into `count`.
+fn merge_neighbours(mut spheres: Vec<BoundingSphere>, count: usize) -> Vec<BoundingSphere> {
+    let around = BoundingSphere::around(spheres.iter().map(|sphere| sphere.center));
+    let low = around.center - around.radius;
+    let scale = 1023.0 / (2.0 * around.radius).max(f32::MIN_POSITIVE);
+    spheres.sort_by_cached_key(|sphere| z_order(((sphere.center - low) * scale).as_uvec3()));
+    let run = spheres.len().div_ceil(count);
+    let merged = |run: &[BoundingSphere]| run[1..].iter().fold(run[0], |sphere, other| sphere.union(*other));
+    spheres.chunks(run).map(merged).collect()
+}
+
+/// The place of a cell of a grid of 1024³ along a Z-order curve.
+fn z_order(cell: UVec3) -> u32 {
+    let bit = |axis: usize, level: u32| (cell[axis] >> level & 1) << (3 * level + axis as u32);
+    (0..10).flat_map(|level| [bit(0, level), bit(1, level), bit(2, level)]).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_hundred_thousand_spheres_merge_at_once() {
+        let place = |i: u32| Vec3::new((i % 47) as f32, (i / 47 % 47) as f32, (i / 2209) as f32);
+        let spheres: Vec<_> = (0..100_000).map(|i| BoundingSphere { center: place(i), radius: 0.3 }).collect();
+        let merged = merge_spheres(spheres.clone(), 16);
+        assert!(merged.len() <= 16);
+        for sphere in spheres.iter().step_by(97) {
+            assert!(merged.iter().any(|m| m.center.distance(sphere.center) + sphere.radius <= m.radius * 1.0001));
+        }
+    }
 
     #[test]
     fn merged_spheres_hold_the_originals() {

@@ -6,7 +6,7 @@ use std::{fs, ops::RangeInclusive, path::Path};
 
 use glam::Vec3;
 
-use crate::{Dispersion, Error, Material, MaterialKind, Warning};
+use crate::{Dispersion, Error, Material, MaterialKind, ReadOptions, Warning, folder::Folder};
 
 /// Index of refraction of a dielectric that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -20,15 +20,16 @@ pub(super) fn slot_materials(
     slots: &[String],
     libraries: &[String],
     obj_path: &Path,
+    options: ReadOptions,
     warnings: &mut Vec<Warning>,
 ) -> Vec<Option<Material>> {
     let mut entries = Vec::new();
+    let folder = Folder::of(obj_path, options);
     for library in libraries {
-        match load_mtl(&obj_path.with_file_name(library)) {
+        let read = folder.inside(library).and_then(|path| load_mtl(&path).map_err(|error| error.to_string()));
+        match read {
             Ok(library) => entries.extend(library),
-            Err(error) => {
-                warnings.push(Warning::MaterialLibrary { path: obj_path.to_owned(), problem: error.to_string() });
-            }
+            Err(problem) => warnings.push(Warning::MaterialLibrary { path: obj_path.to_owned(), problem }),
         }
     }
     let mut materials = Vec::new();

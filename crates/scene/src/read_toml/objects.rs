@@ -9,7 +9,9 @@ use std::{
 use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
-use crate::{Error, Material, Mesh, Object, Warning, load_obj, primitives::are_perpendicular};
+use crate::{
+    Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj, primitives::are_perpendicular,
+};
 
 const OBJECT_KEYS: [&str; 11] = [
     "name",
@@ -32,13 +34,22 @@ const SPHERE_SUBDIVISIONS: u32 = 6;
 /// Reads objects; holds what they share.
 pub(super) struct ObjectReader<'a> {
     base_dir: &'a Path,
-    /// The file's materials, in its order, then those from MTL files that an object uses.
+    options: ReadOptions,
+    /// The file's materials, in its order, then those from MTL and glTF files that an object uses.
     pub(super) materials: Vec<Material>,
     pub(super) warnings: Vec<Warning>,
     named_materials: HashMap<String, usize>,
     meshes: HashMap<PathBuf, SharedMesh>,
+    gltf_files: HashMap<PathBuf, Arc<GltfFile>>,
+    /// Where the materials of glTF files stand in `materials`, of those that an object uses.
+    gltf_materials: HashMap<(PathBuf, usize), usize>,
     object_names: HashSet<String>,
+    /// The last number given to each name that several objects have.
+    name_numbers: HashMap<String, usize>,
 }
+
+/// The objects of a scene file, each with the number of the table that it comes from.
+pub(super) type NumberedObjects = Vec<(usize, Object)>;
 
 /// A mesh as its objects share it.
 #[derive(Clone)]
@@ -59,64 +70,69 @@ impl SharedMesh {
 }
 
 impl<'a> ObjectReader<'a> {
-    pub(super) fn new(base_dir: &'a Path, materials: Vec<Material>) -> Self {
+    pub(super) fn new(base_dir: &'a Path, options: ReadOptions, materials: Vec<Material>) -> Self {
         let named_materials = materials.iter().enumerate().map(|(i, material)| (material.name.clone(), i)).collect();
         Self {
             base_dir,
+            options,
             materials,
             warnings: Vec::new(),
             named_materials,
             meshes: HashMap::new(),
+            gltf_files: HashMap::new(),
+            gltf_materials: HashMap::new(),
             object_names: HashSet::new(),
+            name_numbers: HashMap::new(),
         }
     }
 
-    pub(super) fn read_all(&mut self, tables: &[Table<'_>]) -> Result<Vec<Object>, Error> {
+    pub(super) fn read_all(&mut self, tables: &[Table<'_>]) -> Result<NumberedObjects, Error> {
         for table in tables {
             if let Some(name) = table.get("name") {
                 self.object_names.insert(name.string("a string")?.to_owned());
             }
         }
-        tables.iter().map(|table| self.read(table.clone())).collect()
+        let mut objects = Vec::new();
+        for (number, table) in tables.iter().enumerate() {
+            objects.extend(self.read(table.clone())?.into_iter().map(|object| (number, object)));
+        }
+        Ok(objects)
     }
 
-    fn read(&mut self, mut table: Table<'_>) -> Result<Object, Error> {
+    /// The object of a table; several if its mesh is a glTF file of several.
+    fn read(&mut self, mut table: Table<'_>) -> Result<Vec<Object>, Error> {
         let name = table.get("name").map(|entry| entry.string("a string")).transpose()?;
         if let Some(name) = name {
             table.describe(&format!(" {name:?}"));
         }
         table.allow_only(&OBJECT_KEYS)?;
-        let shape = self.read_shape(&table)?;
+        let shape = one_shape(&table)?;
+        if shape.key() == "mesh" && has_ending(&self.mesh_path(&shape)?, &["gltf", "glb"]) {
+            return self.read_gltf_objects(&table, &shape, name);
+        }
+        let shape = self.read_shape(&shape)?;
         let materials = self.read_materials(&table, &shape)?;
-        Ok(Object {
+        Ok(vec![Object {
             name: name.map_or_else(|| self.unused_name(&shape.default_name), str::to_owned),
             mesh: shape.mesh,
             world_from_object: read_placement(&table)?,
             materials,
-            map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
-        })
+            map_size: read_map_size(&table)?,
+        }])
     }
 
     /// The name itself, or with the first number from 2 that makes it differ from every other object's.
     fn unused_name(&mut self, name: &str) -> String {
         let mut candidate = name.to_owned();
-        let mut number = 2;
+        let number = self.name_numbers.entry(name.to_owned()).or_insert(1);
         while !self.object_names.insert(candidate.clone()) {
+            *number += 1;
             candidate = format!("{name} {number}");
-            number += 1;
         }
         candidate
     }
 
-    fn read_shape(&mut self, table: &Table<'_>) -> Result<SharedMesh, Error> {
-        let shapes: Vec<_> = SHAPE_KEYS.iter().filter_map(|key| table.get(key)).collect();
-        let [shape] = shapes.as_slice() else {
-            let found: Vec<_> = shapes.iter().map(Entry::key).collect();
-            let found = if found.is_empty() { "none".to_owned() } else { found.join(" and ") };
-            return Err(
-                table.error(format!("an object takes exactly one of {}; it has {found}", SHAPE_KEYS.join(", ")))
-            );
-        };
+    fn read_shape(&mut self, shape: &Entry<'_>) -> Result<SharedMesh, Error> {
         let inner = || shape.table(shape.place(), "a table: { key = value, ... }");
         match shape.key() {
             "sphere" => Ok(SharedMesh::primitive(read_sphere(&inner()?)?, "sphere")),
@@ -126,21 +142,90 @@ impl<'a> ObjectReader<'a> {
         }
     }
 
+    fn mesh_path(&self, entry: &Entry<'_>) -> Result<PathBuf, Error> {
+        Ok(self.base_dir.join(entry.string("the path of an OBJ or glTF file, relative to the scene file")?))
+    }
+
+    /// An object for each of a glTF file's.
+    fn read_gltf_objects(
+        &mut self,
+        table: &Table<'_>,
+        entry: &Entry<'_>,
+        name: Option<&str>,
+    ) -> Result<Vec<Object>, Error> {
+        let path = self.mesh_path(entry)?;
+        let file = self.gltf_file(&path, entry)?;
+        let mut slots: Vec<_> =
+            file.objects.iter().flat_map(|part| &part.mesh.material_slots).map(String::as_str).collect();
+        slots.sort_unstable();
+        slots.dedup();
+        let choices: HashMap<_, _> = slots.iter().copied().zip(self.read_choices(table, &slots)?).collect();
+        let (placement, map_size) = (read_placement(table)?, read_map_size(table)?);
+        let mut objects = Vec::new();
+        for part in &file.objects {
+            let slots = part.mesh.material_slots.iter().zip(&part.materials);
+            let materials = slots.map(|(slot, of_file)| {
+                choices[slot.as_str()].unwrap_or_else(|| self.gltf_material(&path, &file, *of_file))
+            });
+            objects.push(Object {
+                materials: materials.collect(),
+                name: match name {
+                    Some(name) if file.objects.len() == 1 => name.to_owned(),
+                    Some(name) => self.unused_name(&format!("{name} {}", part.name)),
+                    None => self.unused_name(&part.name),
+                },
+                mesh: Arc::clone(&part.mesh),
+                world_from_object: placement * part.world_from_object,
+                map_size: None,
+            });
+        }
+        self.set_map_size(&mut objects, map_size);
+        Ok(objects)
+    }
+
+    /// Gives the objects that have an energy map its size; all of them, if none has.
+    fn set_map_size(&self, objects: &mut [Object], map_size: Option<u32>) {
+        let is_receiver = |object: &Object| object.materials.iter().any(|index| self.materials[*index].is_receiver());
+        let has_receiver = objects.iter().any(is_receiver);
+        for object in objects.iter_mut().filter(|object| !has_receiver || is_receiver(object)) {
+            object.map_size = map_size;
+        }
+    }
+
+    fn gltf_file(&mut self, path: &Path, entry: &Entry<'_>) -> Result<Arc<GltfFile>, Error> {
+        if let Some(file) = self.gltf_files.get(path) {
+            return Ok(Arc::clone(file));
+        }
+        let file = load_gltf(path, self.options).map_err(|cause| in_file(entry, cause))?;
+        if file.objects.is_empty() {
+            return Err(entry.error(format!("is {}, whose scene has no triangles", path.display())));
+        }
+        self.warnings.extend(file.warnings.iter().cloned());
+        let file = Arc::new(file);
+        self.gltf_files.insert(path.to_owned(), Arc::clone(&file));
+        Ok(file)
+    }
+
+    /// The index of a glTF file's material, which joins the scene on its first use.
+    fn gltf_material(&mut self, path: &Path, file: &GltfFile, index: usize) -> usize {
+        *self.gltf_materials.entry((path.to_owned(), index)).or_insert_with(|| {
+            self.materials.push(file.materials[index].clone());
+            self.materials.len() - 1
+        })
+    }
+
     fn read_mesh_file(&mut self, entry: &Entry<'_>) -> Result<SharedMesh, Error> {
-        let path = self.base_dir.join(entry.string("the path of an OBJ file, relative to the scene file")?);
+        let path = self.mesh_path(entry)?;
         if let Some(mesh) = self.meshes.get(&path) {
             return Ok(mesh.clone());
         }
-        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("obj")) {
-            return Err(
-                entry.error(format!("is {}; meshes are read from OBJ files, whose names end in .obj", path.display()))
-            );
+        if !has_ending(&path, &["obj"]) {
+            return Err(entry.error(format!(
+                "is {}; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb",
+                path.display()
+            )));
         }
-        let file = load_obj(&path).map_err(|cause| Error::File {
-            at: entry.location(),
-            place: entry.place(),
-            cause: Box::new(cause),
-        })?;
+        let file = load_obj(&path, self.options).map_err(|cause| in_file(entry, cause))?;
         self.warnings.extend(file.warnings.iter().filter(|warning| !is_about_textures(warning)).cloned());
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let shared = SharedMesh {
@@ -155,25 +240,30 @@ impl<'a> ObjectReader<'a> {
 
     /// For each slot of the mesh, the index of its material: from `material_slots`, else `material`, else the MTL file.
     fn read_materials(&mut self, table: &Table<'_>, shape: &SharedMesh) -> Result<Vec<usize>, Error> {
-        let slots = &shape.mesh.material_slots;
-        let mut chosen = vec![None; slots.len().max(1)];
-        if let Some(material) = table.get("material") {
-            chosen.fill(Some(self.material(&material)?));
-        }
-        if let Some(entry) = table.get("material_slots") {
-            let known: Vec<_> = slots.iter().map(String::as_str).collect();
-            for slot in entry.table(entry.place(), "a table: { \"slot\" = \"material\" }")?.entries() {
-                let index = known.iter().position(|name| *name == slot.key());
-                let unknown = || entry.unknown_name("material slot", slot.key(), &known, "slots of the mesh");
-                chosen[index.ok_or_else(unknown)?] = Some(self.material(&slot)?);
-            }
-        }
+        let slots: Vec<_> = shape.mesh.material_slots.iter().map(String::as_str).collect();
+        let chosen = self.read_choices(table, &slots)?;
         let mut materials = Vec::new();
         for (slot, choice) in chosen.into_iter().enumerate() {
             let found = choice.or_else(|| self.mtl_material(shape, slot));
             materials.push(found.ok_or_else(|| no_material(table, shape, slot))?);
         }
         Ok(materials)
+    }
+
+    /// For each slot, or for all triangles where there are none, the material that the table chooses, if it does.
+    fn read_choices(&self, table: &Table<'_>, slots: &[&str]) -> Result<Vec<Option<usize>>, Error> {
+        let mut chosen = vec![None; slots.len().max(1)];
+        if let Some(material) = table.get("material") {
+            chosen.fill(Some(self.material(&material)?));
+        }
+        if let Some(entry) = table.get("material_slots") {
+            for slot in entry.table(entry.place(), "a table: { \"slot\" = \"material\" }")?.entries() {
+                let index = slots.iter().position(|name| *name == slot.key());
+                let unknown = || entry.unknown_name("material slot", slot.key(), slots, "slots of the mesh");
+                chosen[index.ok_or_else(unknown)?] = Some(self.material(&slot)?);
+            }
+        }
+        Ok(chosen)
     }
 
     /// The index of the material that the entry names.
@@ -199,6 +289,29 @@ impl<'a> ObjectReader<'a> {
         self.materials.push(material.clone());
         Some(self.materials.len() - 1)
     }
+}
+
+/// The one entry of an object that says what its surface is.
+fn one_shape<'d>(table: &Table<'d>) -> Result<Entry<'d>, Error> {
+    let mut shapes: Vec<_> = SHAPE_KEYS.iter().filter_map(|key| table.get(key)).collect();
+    if shapes.len() == 1 {
+        return Ok(shapes.remove(0));
+    }
+    let found: Vec<_> = shapes.iter().map(Entry::key).collect();
+    let found = if found.is_empty() { "none".to_owned() } else { found.join(" and ") };
+    Err(table.error(format!("an object takes exactly one of {}; it has {found}", SHAPE_KEYS.join(", "))))
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|found| endings.iter().any(|ending| found.eq_ignore_ascii_case(ending)))
+}
+
+fn in_file(entry: &Entry<'_>, cause: Error) -> Error {
+    Error::File { at: entry.location(), place: entry.place(), cause: Box::new(cause) }
+}
+
+fn read_map_size(table: &Table<'_>) -> Result<Option<u32>, Error> {
+    table.get("map_size").map(|entry| entry.whole32()).transpose()
 }
 
 /// Whether a warning matters only to objects that take their material from the MTL file.

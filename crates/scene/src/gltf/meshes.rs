@@ -1,0 +1,301 @@
+//! Meshes: all primitives of one as one list of triangles, with a slot for each material.
+
+use std::collections::HashMap;
+
+use glam::{Vec2, Vec3};
+use gltf_json::{
+    Root,
+    accessor::Type,
+    mesh::{Primitive, Semantic},
+};
+
+use super::{
+    buffers::Buffers,
+    fault::{Fault, Result, entry, place},
+    pose::{Pose, PrimitivePose},
+    primitives::{Corners, attribute},
+};
+use crate::Mesh;
+
+/// The most triangles of a file, over all its meshes.
+pub(super) const MOST_TRIANGLES: usize = 1 << 27;
+
+/// The corner of a picture that shows where there are no texture coordinates.
+const UPPER_LEFT: Vec2 = Vec2::Y;
+
+/// A mesh, and for each of its slots the index of its material (none for the default one).
+pub(super) struct SlottedMesh {
+    pub(super) mesh: Mesh,
+    pub(super) slots: Vec<Option<usize>>,
+}
+
+/// Reads meshes; holds what it found of interest.
+pub(super) struct MeshReader<'a, 'b> {
+    pub(super) root: &'a Root,
+    pub(super) buffers: &'a Buffers<'b>,
+    triangles_left: usize,
+    pub(super) warnings: Vec<Fault>,
+}
+
+impl<'a, 'b> MeshReader<'a, 'b> {
+    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'b>) -> Self {
+        Self { root, buffers, triangles_left: MOST_TRIANGLES, warnings: Vec::new() }
+    }
+
+    /// The mesh of an index, in a pose; none if it has no triangles. `uv_set_of` tells which texture coordinates a material takes,
+    /// if it takes any.
+    pub(super) fn read(
+        &mut self,
+        index: usize,
+        pose: &Pose,
+        user: &str,
+        uv_set_of: impl Fn(Option<usize>) -> Result<Option<u32>>,
+    ) -> Result<Option<SlottedMesh>> {
+        let source = entry(&self.root.meshes, "meshes", index, user)?;
+        let mesh_place = place("meshes", index, source.name.as_deref());
+        let mut builder = Builder::default();
+        for (number, primitive) in source.primitives.iter().enumerate() {
+            let place = format!("{mesh_place}.primitives[{number}]");
+            let material = primitive.material.map(|material| material.value());
+            let uv_set = uv_set_of(material)?;
+            let corners = Corners::read(self.root, self.buffers, primitive, uv_set, &place)?;
+            let Some(corners) = corners else {
+                self.warnings.push(Fault::new(place, "has points or lines, which are not shown"));
+                continue;
+            };
+            self.take(corners.triangles.len(), &place)?;
+            self.warn_of(primitive, &corners, uv_set, &place)?;
+            let pose = pose.of_primitive(self.root, self.buffers, primitive, corners.positions.count, &place)?;
+            builder.add(corners, &pose, material, &place)?;
+        }
+        let (built, replaced) = builder.finish();
+        if replaced > 0 {
+            let problem = format!("has {replaced} corners without a usable normal; the facet's normal stands in");
+            self.warnings.push(Fault::new(mesh_place, problem));
+        }
+        Ok(built)
+    }
+
+    fn take(&mut self, triangles: usize, place: &str) -> Result<()> {
+        self.triangles_left = self.triangles_left.checked_sub(triangles).ok_or_else(|| {
+            Fault::new(
+                place,
+                format!("brings the file to more than {MOST_TRIANGLES} triangles, the most that are read"),
+            )
+        })?;
+        Ok(())
+    }
+
+    /// What of a primitive is not shown as it is meant.
+    fn warn_of(
+        &mut self,
+        primitive: &Primitive,
+        corners: &Corners<'_>,
+        uv_set: Option<u32>,
+        place: &str,
+    ) -> Result<()> {
+        if let Some(set) = uv_set.filter(|_| corners.uvs.is_none()) {
+            let problem = format!(
+                "has no TEXCOORD_{set}, which the pictures of its material need; their upper left corner shows"
+            );
+            self.warnings.push(Fault::new(place, problem));
+        }
+        if has_colors(self.root, self.buffers, primitive, corners.positions.count, place)? {
+            let problem = "has vertex colours (COLOR_0), which are not supported; its material shows without them";
+            self.warnings.push(Fault::new(place, problem));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a primitive has vertex colours other than white.
+fn has_colors(root: &Root, buffers: &Buffers<'_>, primitive: &Primitive, vertices: usize, place: &str) -> Result<bool> {
+    const WHITE: f32 = 0.999;
+    for (kind, channels) in [(Type::Vec3, 3), (Type::Vec4, 4)] {
+        let has_kind = |index: &gltf_json::Index<gltf_json::Accessor>| {
+            let accessor = root.accessors.get(index.value());
+            accessor.is_some_and(|a| matches!(a.type_, gltf_json::validation::Checked::Valid(found) if found == kind))
+        };
+        let key = gltf_json::validation::Checked::Valid(Semantic::Colors(0));
+        if !primitive.attributes.get(&key).is_some_and(has_kind) {
+            continue;
+        }
+        let Some(colors) = attribute(root, buffers, primitive, (Semantic::Colors(0), kind), vertices, place)? else {
+            continue;
+        };
+        return Ok((0..vertices).any(|vertex| match channels {
+            3 => colors.numbers::<3>(vertex).iter().any(|channel| *channel < WHITE),
+            _ => colors.numbers::<4>(vertex).iter().any(|channel| *channel < WHITE),
+        }));
+    }
+    Ok(false)
+}
+
+/// A mesh in the making. What all primitives so far lack takes no memory.
+#[derive(Default)]
+struct Builder {
+    mesh: Mesh,
+    slots: Vec<Option<usize>>,
+    /// Corners of primitives that have no normals at all.
+    corners_without: usize,
+}
+
+impl Builder {
+    fn add(
+        &mut self,
+        mut corners: Corners<'_>,
+        pose: &PrimitivePose<'_>,
+        material: Option<usize>,
+        place: &str,
+    ) -> Result<()> {
+        let mut triangles = std::mem::take(&mut corners.triangles);
+        if triangles.is_empty() {
+            return Ok(());
+        }
+        let numbering = Numbering::of(&triangles, corners.positions.count);
+        let first = self.mesh.positions.len();
+        let vertices = first.saturating_add(numbering.used.len());
+        if vertices >= u32::MAX as usize {
+            return Err(Fault::new(place, "brings its mesh to 2^32 vertices; it must have fewer"));
+        }
+        self.add_vertices(&corners, pose, &numbering.used, place)?;
+        if corners.normals.is_none() {
+            self.corners_without += 3 * triangles.len();
+        }
+        triangles.iter_mut().flatten().for_each(|vertex| *vertex = first as u32 + numbering.number(*vertex));
+        self.add_triangles(triangles, material);
+        Ok(())
+    }
+
+    fn add_vertices(
+        &mut self,
+        corners: &Corners<'_>,
+        pose: &PrimitivePose<'_>,
+        used: &[u32],
+        place: &str,
+    ) -> Result<()> {
+        let Mesh { positions, normals, uvs, .. } = &mut self.mesh;
+        let before = positions.len();
+        positions.reserve_exact(used.len());
+        if corners.normals.is_some() || !normals.is_empty() {
+            normals.resize(before + used.len(), Vec3::ZERO);
+        }
+        if corners.uvs.is_some() || corners.has_pictures || !uvs.is_empty() {
+            uvs.resize(before + used.len(), UPPER_LEFT);
+        }
+        for (number, &vertex) in (before..).zip(used) {
+            let vertex = vertex as usize;
+            let position = Vec3::from(corners.positions.numbers(vertex));
+            let normal = corners.normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals.numbers(vertex)));
+            let (position, normal) = pose.apply(vertex, position, normal);
+            if !position.is_finite() {
+                return Err(not_finite("position", position, vertex, place));
+            }
+            positions.push(position);
+            if let Some(stored) = normals.get_mut(number).filter(|_| normal.is_finite()) {
+                *stored = normal;
+            }
+            if let Some(given) = &corners.uvs {
+                let [u, v] = given.numbers(vertex);
+                // (0, 0) is a picture's upper left corner in glTF, and its lower left one here.
+                uvs[number] = Vec2::new(u, 1.0 - v);
+                if !uvs[number].is_finite() {
+                    return Err(not_finite("texture coordinates", Vec2::new(u, v), vertex, place));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_triangles(&mut self, triangles: Vec<[u32; 3]>, material: Option<usize>) {
+        let before = self.mesh.triangles.len();
+        let slot = self.slot(material);
+        if slot > 0 || !self.mesh.triangle_slots.is_empty() {
+            self.mesh.triangle_slots.resize(before, 0);
+            self.mesh.triangle_slots.resize(before + triangles.len(), slot);
+        }
+        if before == 0 {
+            self.mesh.triangles = triangles;
+        } else {
+            self.mesh.triangles.extend(triangles);
+        }
+    }
+
+    fn slot(&mut self, material: Option<usize>) -> u32 {
+        let known = self.slots.iter().position(|slot| *slot == material);
+        known.unwrap_or_else(|| {
+            self.slots.push(material);
+            self.slots.len() - 1
+        }) as u32
+    }
+
+    /// The mesh, if it has triangles, and how many corners have unusable normals.
+    fn finish(mut self) -> (Option<SlottedMesh>, usize) {
+        let mut replaced = 0;
+        if !self.mesh.normals.is_empty() {
+            replaced = self.mesh.replace_unusable_normals().saturating_sub(self.corners_without);
+        }
+        let Self { mesh, slots, .. } = self;
+        ((!mesh.triangles.is_empty()).then_some(SlottedMesh { mesh, slots }), replaced)
+    }
+}
+
+fn not_finite(what: &str, found: impl std::fmt::Display, vertex: usize, place: &str) -> Fault {
+    Fault::new(place, format!("has the {what} {found} at vertex {vertex}; all numbers must be finite"))
+}
+
+/// The vertices that triangles use, in rising order, and the number of each among them.
+struct Numbering {
+    used: Vec<u32>,
+    numbers: Numbers,
+}
+
+enum Numbers {
+    /// By vertex.
+    All(Vec<u32>),
+    /// Of a few of many vertices.
+    Few(HashMap<u32, u32>),
+}
+
+impl Numbering {
+    /// Takes memory in proportion to the triangles, however many vertices there are.
+    fn of(triangles: &[[u32; 3]], vertices: usize) -> Self {
+        let corners = triangles.as_flattened();
+        if vertices > 4 * corners.len() {
+            let mut used = corners.to_vec();
+            used.sort_unstable();
+            used.dedup();
+            let numbers = used.iter().copied().zip(0..).collect();
+            return Self { used, numbers: Numbers::Few(numbers) };
+        }
+        let mut numbers = vec![0; vertices];
+        corners.iter().for_each(|vertex| numbers[*vertex as usize] = 1);
+        let mut used = Vec::new();
+        for (vertex, number) in numbers.iter_mut().enumerate().filter(|(_, number)| **number == 1) {
+            *number = used.len() as u32;
+            used.push(vertex as u32);
+        }
+        Self { used, numbers: Numbers::All(numbers) }
+    }
+
+    fn number(&self, vertex: u32) -> u32 {
+        match &self.numbers {
+            Numbers::All(numbers) => numbers[vertex as usize],
+            Numbers::Few(numbers) => numbers[&vertex],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unused_vertices_are_left_out() {
+        for vertices in [6, 1000] {
+            let numbering = Numbering::of(&[[5, 1, 2]], vertices);
+            assert_eq!(numbering.used, [1, 2, 5]);
+            assert_eq!([5, 1, 2].map(|vertex| numbering.number(vertex)), [2, 0, 1]);
+        }
+    }
+}
