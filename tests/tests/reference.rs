@@ -258,6 +258,8 @@ fn pictures_on_glass_metal_and_floor() {
         ("{ type = \"conductor\", metal = \"gold\", roughness = 0.5 }", "{ type = \"coated\", albedo = 0.9 }"),
     ] {
         let mut scene = of(glass, floor, "");
+        // The normal map has edges at which single photons part from their twins; a rare one that the guide makes heavy would show.
+        scene.settings.guiding = false;
         scene.objects[0].mesh = Mesh::sphere(Vec3::new(0.0, 0.3, 0.0), 0.3, 6).into();
         for material in
             scene.materials.iter_mut().filter(|material| ["glass", "floor"].contains(&material.name.as_str()))
@@ -272,7 +274,7 @@ fn pictures_on_glass_metal_and_floor() {
                 _ => material.textures.color = Some(tiles()),
             }
         }
-        assert_alike(&scene, 1e-2);
+        assert_alike(&scene, 5e-3);
     }
 }
 
