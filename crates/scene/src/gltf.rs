@@ -128,7 +128,7 @@ impl Reader<'_, '_> {
             if let Some((name, kind)) = read_light(self.root, node, &world)? {
                 let name = name.or_else(|| self.root.nodes[node].name.clone()).map(|name| shortened(&name));
                 let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| "light".to_owned());
-                self.file.lights.push(Light { name, kind, photon_share: 1 });
+                self.file.lights.push(Light { name, kind, photon_share: 1, group: None });
             }
             self.file.cameras.extend(read_camera(self.root, node, &world, &mut self.warnings)?);
         }

@@ -238,6 +238,7 @@ impl Bounds {
                 flux: Vec3::splat(4.0 * PI * distance * distance * LAMP_IRRADIANCE),
             },
             photon_share: 1,
+            group: None,
         }
     }
 
