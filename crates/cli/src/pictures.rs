@@ -7,6 +7,15 @@ use diacaustic_output::{Channel, Display, Format, Picture, Values, write_exr_wit
 
 use crate::Error;
 
+/// The warning about layers that no file takes.
+pub(crate) const NO_LAYERS: &str =
+    "no layers are written: output.layers asks for them, but no picture's name ends in .exr";
+
+/// Whether some picture's format has layers.
+pub(crate) fn can_hold_layers(paths: &[PathBuf]) -> bool {
+    paths.iter().any(|path| matches!(Format::of(path), Ok(Format::Exr)))
+}
+
 /// Writes a picture in the formats that the files' endings stand for; OpenEXR holds its layers as well.
 pub(crate) fn write_pictures(
     paths: &[PathBuf],

@@ -20,7 +20,7 @@ use crate::{
     Arguments, Error,
     chunks::{first_photons, in_chunks, photon_deadline, rounded_photons},
     outputs::Outputs,
-    pictures::write_pictures,
+    pictures::{NO_LAYERS, can_hold_layers, write_pictures},
     progress::{Metric, Progress, Seconds},
     report::{Report, Times},
     warnings::about_photons,
@@ -40,6 +40,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
     let mut outputs = Outputs::choose(arguments, &scene.output.files)?;
     for warning in &warnings {
         progress.warn(warning);
+    }
+    if !scene.output.layers.is_empty() && !can_hold_layers(&outputs.pictures) {
+        progress.warn(NO_LAYERS);
+        scene.output.layers.clear();
     }
     if is_gltf(&arguments.scene) && warnings.contains(&Warning::NoReceiver) {
         progress.warn("--floor adds a floor, which shows caustics");

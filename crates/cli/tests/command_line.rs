@@ -176,6 +176,9 @@ fn layers_stand_beside_the_picture_in_exr() {
     assert_eq!(workplace.run(&["plain.toml", "-o", "plain.png"]).status, Some(0));
     let png = |name: &str| fs::read(workplace.path(name)).unwrap();
     assert!(png("layers.png") == png("plain.png"), "layers change the PNG");
+    let without_exr = workplace.render(&["-o", "layers.png"]);
+    let expected = "no layers are written: output.layers asks for them, but no picture's name ends in .exr";
+    assert_eq!(without_exr.warnings(), [expected]);
 }
 
 #[test]
