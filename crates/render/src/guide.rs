@@ -1,7 +1,12 @@
 //! Guides: how emission numbers are moved to where photons matter; docs/photon-paths.md, "Guide".
 
-use crate::aim::Emission;
-use diacaustic_shaders::light_kind;
+use std::f32::consts::PI;
+
+use diacaustic_shaders::{AimTarget, light_kind};
+use diacaustic_surface::BoundingSphere;
+use glam::Vec3;
+
+use crate::{aim::Emission, lights::Emitter};
 
 /// Parts into which a table's bounds divide [0, 1): as fine as emission numbers are.
 const QUANTA: f64 = 16_777_216.0;
@@ -31,17 +36,22 @@ pub struct GuideTable {
 
 impl Guide {
     /// The guide that moves nothing, with the cells in which a pilot of this light counts.
-    pub(crate) fn even(kind: u32, emission: &Emission) -> Self {
-        // Each target has a part of the columns of its own.
+    pub(crate) fn even(emitter: &Emitter, emission: &Emission) -> Self {
+        // Each target has a part of the columns of its own. A ray that several targets could have sent has the density of all of them
+        // together, which guides of each alone would upset.
         let targets = emission.targets().len().max(1);
-        let side = match targets {
-            1 => 64,
-            2..=4 => 32,
-            _ => 16,
+        // Where a sphere sends a photon that it does not aim depends on all four numbers at once, which two tables do not know.
+        let is_unaimed = *emission == Emission::Unaimed;
+        let (targets, side) = match targets {
+            _ if is_unaimed => (1, 1),
+            1 => (1, 64),
+            _ if !are_apart(emission.targets(), emitter.bounds) => (1, 1),
+            2..=4 => (targets, 32),
+            _ => (targets, 16),
         };
         // Where a photon starts on a light that aims, or in a sun's disc, says little of where it goes.
-        let place_side = match (kind, emission) {
-            (light_kind::SURFACE | light_kind::ENVIRONMENT, _) | (_, Emission::Unaimed) => 16,
+        let place_side = match emitter.kind() {
+            light_kind::SURFACE | light_kind::ENVIRONMENT => 16,
             _ => 1,
         };
         Self { aim: GuideTable::even(targets * side, side), place: GuideTable::even(place_side, place_side) }
@@ -56,6 +66,21 @@ impl Guide {
     pub(crate) fn records(&self) -> Vec<[u32; 4]> {
         self.aim.records().into_iter().chain(self.place.records()).collect()
     }
+}
+
+/// Whether no ray from a light of these bounds crosses two of its targets.
+fn are_apart(targets: &[AimTarget], light: Option<BoundingSphere>) -> bool {
+    let Some(light) = light else { return false };
+    let cones: Vec<(Vec3, f32)> = targets
+        .iter()
+        .map(|target| {
+            let toward = Vec3::from(target.center) - light.center;
+            let sine = (target.radius + light.radius) / toward.length();
+            (toward.normalize_or_zero(), if sine < 1.0 { sine.asin() } else { PI })
+        })
+        .collect();
+    let apart = |a: &(Vec3, f32), b: &(Vec3, f32)| a.0.angle_between(b.0) > a.1 + b.1;
+    cones.iter().enumerate().all(|(index, a)| cones[index + 1..].iter().all(|b| apart(a, b)))
 }
 
 impl GuideTable {
@@ -162,6 +187,16 @@ mod tests {
         // row, two thirds in the third.
         let begin: Vec<u32> = table.records().iter().map(|entry| entry[2]).collect();
         assert_eq!(begin[..5], [0, 0, 0, 1, 2]);
+    }
+
+    #[test]
+    fn targets_side_by_side_are_apart_and_one_before_the_other_is_not() {
+        let target = |x: f32, z: f32| AimTarget { center: [x, 0.0, z], radius: 0.2, ..AimTarget::default() };
+        let light = Some(BoundingSphere { center: Vec3::new(0.0, 0.0, 3.0), radius: 0.05 });
+        assert!(are_apart(&[target(-0.5, 0.0), target(0.5, 0.0)], light));
+        assert!(!are_apart(&[target(-0.2, 0.0), target(0.2, 0.0)], light));
+        assert!(!are_apart(&[target(0.0, 0.0), target(0.1, 1.0)], light));
+        assert!(!are_apart(&[target(-0.5, 0.0), target(0.5, 0.0)], None));
     }
 
     #[test]

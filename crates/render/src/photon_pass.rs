@@ -133,7 +133,7 @@ impl Photons {
         for emitter in &scene.lights.emitters {
             let Some(emission) = Emission::toward(emitter, scene.casters) else { continue };
             let features = scene.features.for_photons_of(emitter.kind(), scene.settings);
-            let guide = Guide::even(emitter.kind(), &emission);
+            let guide = Guide::even(emitter, &emission);
             lights.push(PhotonLight {
                 emitter: emitter.clone(),
                 emission,

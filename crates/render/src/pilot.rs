@@ -20,6 +20,8 @@ const PRIOR_CHANCE: f64 = 0.25;
 const PRIOR_HITS: f64 = 0.05;
 /// The share of photons that goes evenly to cells that lead to a caster and their neighbours.
 const DEFENSIVE_SHARE: f64 = 0.15;
+/// How fast hits dispel doubt: with h hits a cell at least 1/(1 + 6h) of the photons are spread evenly over these cells.
+const TRUST_IN_HITS: f64 = 6.0;
 /// The share of photons that goes evenly everywhere, with one table.
 const EVEN_SHARE: f64 = 1.0 / 64.0;
 /// The same of each table where there are two: both together keep the least density of one.
@@ -289,7 +291,9 @@ impl CellSums {
             })
             .collect();
         let (important, defended) = (importance.iter().sum::<f64>(), met.iter().filter(|&&met| met > 0.0).count());
-        let by_importance = if important > 0.0 { 1.0 - DEFENSIVE_SHARE - even_share } else { 0.0 };
+        let doubt = 1.0 / (1.0 + TRUST_IN_HITS * all_hits / defended.max(1) as f64);
+        let by_importance =
+            if important > 0.0 { (1.0 - doubt.max(DEFENSIVE_SHARE) - even_share).max(0.0) } else { 0.0 };
         let by_defence = if defended > 0 { 1.0 - even_share - by_importance } else { 0.0 };
         let weights: Vec<f64> = (0..cells)
             .map(|cell| {
