@@ -329,7 +329,9 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
     let lobe_counts = !(vertex.is_caster && (*path).lights_counted) && (cos_light < 0.0) == transmitted;
     let lobe = evaluate_specular(vertex.material, wo, wi, point.n_s, vertex.sides);
     let lobe_pdf = lobe.pdf * vertex.specular_chance;
-    let weight = select(1.0, light.pdf / (light.pdf + lobe_pdf), light.pdf > 0.0);
+    // A path that ends here leaves all of the light to this ray.
+    let goes_on = vertex.is_caster || (*path).bounces < camera_params.max_bounces;
+    let weight = select(1.0, light.pdf / (light.pdf + lobe_pdf), light.pdf > 0.0 && goes_on);
     let by_lobe = select(vec3<f32>(0.0), lobe.value * weight, lobe_counts);
     reflected += by_lobe;
     var media = (*path).media;

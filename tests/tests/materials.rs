@@ -227,3 +227,27 @@ fn rough_glass_in_a_furnace_loses_what_the_reference_says() {
         );
     }
 }
+
+#[test]
+fn wide_gloss_shows_all_of_a_lamp_without_a_bounce() {
+    // Nothing but the lamp is there to see, so more bounces add nothing; a path that ends at the plate must not leave it half its light.
+    let seen = |max_bounces: u32, material: &str| {
+        mean(&render(&scene(&format!(
+            "camera = {{ position = [0, 2, 2], look_at = [0, 0, 0], vertical_fov = 10 }}
+             render = {{ width = 32, height = 32, samples = 256, photons = 0, max_bounces = {max_bounces} }}
+             materials.plate = {material}
+             lights = [{{ type = \"sphere\", center = [0, 2, -2], radius = 0.5, flux = 100 }}]
+             objects = [
+                 {{ rectangle = {{ center = [0, 0, 0], edge_u = [8, 0, 0], edge_v = [0, 0, -8] }}, material = \"plate\" }},
+             ]"
+        ))))
+        .y
+    };
+    for material in [
+        "{ type = \"metallic_roughness\", base_color = 0.8, metallic = 0.9, roughness = 0.35 }",
+        "{ type = \"coated\", albedo = 0.2, roughness = 0.5 }",
+    ] {
+        let (none, some) = (seen(0, material), seen(3, material));
+        assert!((none / some - 1.0).abs() < 0.01, "{material}: {none} without bounces, {some} with");
+    }
+}
