@@ -70,7 +70,7 @@ pub fn caster_bounds(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<Bounding
 /// Spheres among which every pair is looked at; more are first merged with their neighbours along a Z-order curve.
 const MOST_PAIRED: usize = 128;
 
-/// Merges spheres until at most `limit` remain: of [`MOST_PAIRED`] and fewer the two whose union has the least radius, one after the other.
+/// Merges spheres until at most `limit` remain: of 128 and fewer the two whose union has the least radius, one after the other.
 pub fn merge_spheres(mut spheres: Vec<BoundingSphere>, limit: usize) -> Vec<BoundingSphere> {
     if spheres.len() > MOST_PAIRED.max(limit) {
         spheres = merge_neighbours(spheres, MOST_PAIRED.max(limit));
