@@ -12,25 +12,25 @@ import package::film::layers::{
     add_to_caustic_of_group, add_to_data_layers, add_to_group, add_to_layer, add_to_no_group, add_to_squares,
 };
 import package::film::texels::{footprint, Footprint};
-import package::geometry::surface::{leave, surface_point, SurfacePoint};
+import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{
     camera_params, data_layers, film, irradiance, sightings, Sighting, LAYER_CAUSTIC, LAYER_DIRECT, LAYER_EMISSION, LAYER_INDIRECT,
 };
 import package::layout::features::{
-    has_data_layers, has_dispersion, has_distant_lights, has_light_layers, has_textures, light_group_count, notes_sightings,
+    has_data_layers, has_dispersion, has_distant_lights, has_light_layers, light_group_count, notes_sightings,
 };
-import package::layout::records::{load_light, load_light_group, load_material, load_triangle, record_texel};
+import package::layout::records::{load_light, load_light_group, load_triangle, record_texel};
 import package::layout::scene::{
-    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_GROUP_SHIFT, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG, MATERIAL_RECEIVER,
-    MATERIAL_TEXTURED, NONE,
+    Material, Triangle, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_GROUP_SHIFT, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_PHONG,
+    MATERIAL_RECEIVER, NONE,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::{cone_height, cosine_hemisphere, disc, PI};
 import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
-import package::texture::surface::textured_surface;
+import package::texture::surface::surface_at;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
 const SLOT_MICROFACET: u32 = 4096u;
@@ -163,13 +163,9 @@ struct Vertex {
 
 /// The surface at `hit`. Its media say whether a boundary exists at all: where `beyond` begins with the same medium, it does not.
 fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex {
-    var point = surface_point(hit, triangle, (*path).direction);
-    var material = load_material(triangle.material);
-    if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
-        let textured = textured_surface(material, point, hit, triangle, (*path).direction);
-        material = textured.material;
-        point = textured.point;
-    }
+    let met = surface_at(hit, triangle, (*path).direction);
+    let material = met.material;
+    let point = met.point;
     let media = (*path).media;
     let kind = material.kind & MATERIAL_KIND_BITS;
     var beyond = media;

@@ -9,23 +9,23 @@ import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::footprint;
 import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
-import package::layout::features::{has_dispersion, has_footprints, has_guide, has_textures, photon_light_kind};
-import package::layout::records::{load_corners, load_material, load_object, load_triangle};
-import package::geometry::surface::{leave, surface_point, SurfacePoint};
+import package::layout::features::{has_dispersion, has_footprints, has_guide, photon_light_kind};
+import package::layout::records::{load_corners, load_object, load_triangle};
+import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
     energy, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_DISPERSION, LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
-    Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, MATERIAL_TEXTURED, NONE,
+    Material, MATERIAL_CASTER, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_MIRROR, MATERIAL_RECEIVER, NONE,
     LIGHT_DISTANT, LIGHT_ENVIRONMENT, MATERIAL_THIN_WALLED, Triangle,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::frame;
 import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
-import package::texture::surface::textured_surface;
+import package::texture::surface::surface_at;
 
 /// First slot of the padded numbers for microfacet normals; choices have those below.
 const SLOT_MICROFACET: u32 = 4096u;
@@ -318,13 +318,9 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
 fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
     let triangle = load_triangle(hit.triangle);
-    var point = surface_point(hit, triangle, d);
-    var material = load_material(triangle.material);
-    if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
-        let textured = textured_surface(material, point, hit, triangle, d);
-        material = textured.material;
-        point = textured.point;
-    }
+    let met = surface_at(hit, triangle, d);
+    let material = met.material;
+    let point = met.point;
     if has_footprints {
         transfer_differential(photon, hit.t, point.n_g);
     }

@@ -1,11 +1,11 @@
 // What pictures make of a surface at a point; docs/materials.md, "Textures".
 
-import package::geometry::surface::SurfacePoint;
+import package::geometry::surface::{surface_point, SurfacePoint};
 import package::geometry::traverse::Hit;
-import package::layout::features::has_gloss;
-import package::layout::records::{load_material_textures, load_surface_texture, load_texture_coordinates};
+import package::layout::features::{has_gloss, has_textures};
+import package::layout::records::{load_material, load_material_textures, load_surface_texture, load_texture_coordinates};
 import package::layout::scene::{
-    Material, SurfaceTexture, TextureCoordinates, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, NONE,
+    Material, SurfaceTexture, TextureCoordinates, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, MATERIAL_TEXTURED, NONE,
 };
 import package::texture::lookup::{channel_of, interpolate_uv, picture_place, sample_texture};
 
@@ -97,4 +97,14 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
         }
     }
     return TexturedSurface(derive(material), point);
+}
+
+/// The surface at a hit, seen along `direction`, with its pictures if it has any.
+fn surface_at(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
+    let point = surface_point(hit, triangle, direction);
+    let material = load_material(triangle.material);
+    if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
+        return textured_surface(material, point, hit, triangle, direction);
+    }
+    return TexturedSurface(material, point);
 }

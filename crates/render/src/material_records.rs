@@ -156,6 +156,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn textured_surfaces_have_the_constants_of_plain_ones() {
+        for (name, value) in [("SMOOTH", SMOOTH), ("DIELECTRIC_F0", DIELECTRIC_F0)] {
+            let after = diacaustic_shaders::CAMERA.source.split(&format!("const {name}: f32 = ")).nth(1);
+            let written = after.and_then(|text| text.split(';').next()).expect("the kernel's constant");
+            assert_eq!(written.trim_end_matches('f').parse::<f32>().unwrap(), value, "{name}");
+        }
+    }
+
+    #[test]
     fn mean_reflectance_of_glass() {
         // 0.0918 for n = 1.5 (Walsh 1926).
         assert!((mean_reflectance(1.5) - 0.0918).abs() < 1e-4, "{}", mean_reflectance(1.5));
