@@ -1,6 +1,6 @@
 // Bind groups 1 and 2 of the camera pass.
 
-/// One dispatch of the camera pass: one sample of every pixel.
+/// One dispatch of the camera pass: one sample of every pixel, or of those of some tiles.
 struct CameraParams {
     /// Centre of the lens, metres, world frame.
     position: vec3<f32>,
@@ -12,8 +12,8 @@ struct CameraParams {
     focus_distance: f32,
     /// From the centre of the picture to its upper edge, at distance 1.
     half_up: vec3<f32>,
-    /// Index of the sample.
-    sample_index: u32,
+    /// Listed tiles that the dispatch takes a sample of; 0 if it takes the whole picture.
+    tile_count: u32,
     /// Unit direction of view.
     forward: vec3<f32>,
     /// Seed of the camera pass.
@@ -102,6 +102,8 @@ const LAYER_INDIRECT: u32 = 3u;
 const LIGHT_LAYERS: u32 = 4u;
 
 @group(1) @binding(0) var<uniform> camera_params: CameraParams;
+/// Tiles of 8 × 8 pixels to take samples of, four a texel: column in the low 16 bits, row in the high ones.
+@group(1) @binding(1) var tiles: texture_2d<u32>;
 /// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused. With several light groups, of each
 /// texel first all light's, then each group's.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
@@ -114,3 +116,5 @@ const LIGHT_LAYERS: u32 = 4u;
 @group(2) @binding(4) var<storage, read_write> data_layers: array<DataLayers>;
 /// For each pixel the sums of each light group's light, then of each one's caustic, then of light without group, W/(m² sr); the last component is unused.
 @group(2) @binding(5) var<storage, read_write> group_layers: array<vec4<f32>>;
+/// For each pixel the sum of the radiance of every second sample, W/(m² sr), and their number.
+@group(2) @binding(6) var<storage, read_write> halves: array<vec4<f32>>;

@@ -272,7 +272,7 @@ shared_structs! {
         /// The cell of the guide of the next two.
         place_cell: u32,
     }
-    /// One dispatch of the camera pass: one sample of every pixel.
+    /// One dispatch of the camera pass: one sample of every pixel, or of those of some tiles.
     struct CameraParams {
         /// Centre of the lens, metres, world frame.
         position: [f32; 3],
@@ -284,8 +284,8 @@ shared_structs! {
         focus_distance: f32,
         /// From the centre of the picture to its upper edge, at distance 1.
         half_up: [f32; 3],
-        /// Index of the sample.
-        sample_index: u32,
+        /// Listed tiles that the dispatch takes a sample of; 0 if it takes the whole picture.
+        tile_count: u32,
         /// Unit direction of view.
         forward: [f32; 3],
         /// Seed of the camera pass.
@@ -318,6 +318,28 @@ shared_structs! {
         exposure: f32,
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
+    }
+    /// One dispatch of the pass that estimates errors.
+    struct ErrorParams {
+        /// Width of the picture, pixels.
+        width: u32,
+        /// Height of the picture, pixels.
+        height: u32,
+        /// Mean radiance of the picture, W/(m² sr).
+        mean_radiance: f32,
+        /// Unused.
+        padding: u32,
+    }
+    /// What the samples of a tile of 8 × 8 pixels come to.
+    struct TileError {
+        /// Mean over pixels and channels of the squared error of the radiance, relative to it, at most 1 each.
+        squared_error: f32,
+        /// Mean radiance, W/(m² sr), of pixels and channels.
+        radiance: f32,
+        /// Samples of a pixel, the least of all.
+        samples: u32,
+        /// Pixels within the picture.
+        pixels: u32,
     }
     /// What a camera path saw of the energy maps.
     struct Sighting {

@@ -2,6 +2,7 @@
 
 use diacaustic_scene::{LightGroups, RenderSettings, Scene};
 use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
+use glam::Vec3;
 
 use crate::{
     Error, Film, LayerImage,
@@ -15,9 +16,10 @@ use crate::{
 };
 
 /// The bindings of `shaders/layout/camera_pass.wgsl`.
-const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 6] = [
+const PARAMS: [Binding; 2] = [Binding::Uniform, Binding::Records];
+const OUTPUTS: [Binding; 7] = [
     Binding::Texels,
+    Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
@@ -25,11 +27,19 @@ const OUTPUTS: [Binding; 6] = [
     Binding::ReadWrite,
 ];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
+const HALVES: Purpose =
+    Purpose { what: "every second sample of the picture's pixels", remedy: "lower width or height, or state samples" };
+const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
 const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
 /// Paths along each side of the picture that note what they see.
 const SIGHTINGS_SIDE: u32 = 128;
 /// The stream of these paths' seeds.
 const SIGHTINGS_SEED_STREAM: u32 = 4;
+/// Paths along each side of the picture, and samples of each, that tell how much the light in the maps changes.
+const PROBE_SIDE: u32 = 128;
+const PROBE_SAMPLES: u32 = 4;
+/// The stream of these paths' seeds.
+const PROBE_SEED_STREAM: u32 = 5;
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
 
@@ -59,6 +69,8 @@ pub(crate) struct Samples {
     params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
+    /// For each pixel the sum of every second sample; an entry without use where the scene states how many samples there are.
+    pub halves: wgpu::Buffer,
     layers: LayerSums,
     params_group: wgpu::BindGroup,
     outputs_group: wgpu::BindGroup,
@@ -76,15 +88,18 @@ impl Samples {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
+        let halves = gpu.zeroed(HALVES, if features.has_halves() { 16 * pixels } else { 0 })?;
         let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        let outputs = Outputs { film: &film, sightings: &no_sightings, layers: &layers, halves: &halves };
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
             template: template(scene, lights),
-            params_group: gpu.bind(&pass.params_layout, &[&params]),
-            outputs_group: outputs_group(gpu, pass, maps, &film, &layers, &no_sightings),
+            params_group: params_group(gpu, pass, &params, &[])?,
+            outputs_group: outputs.group(gpu, pass, maps),
             params,
             film,
+            halves,
             layers,
         })
     }
@@ -110,7 +125,9 @@ impl Samples {
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
-        let outputs = outputs_group(gpu, pass, maps, &film, &no_layers, &sightings);
+        let no_halves = gpu.zeroed(HALVES, 0)?;
+        let outputs = Outputs { film: &film, sightings: &sightings, layers: &no_layers, halves: &no_halves };
+        let outputs = outputs.group(gpu, pass, maps);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
         let tiles = SIGHTINGS_SIDE / TILE_SIZE;
@@ -118,9 +135,54 @@ impl Samples {
         gpu.read(&sightings, 0..paths)
     }
 
+    /// A few samples of a small picture, by the maps as they are: always the same paths, so that two probes differ by what has changed in
+    /// the maps. Blocks.
+    pub fn probe(
+        &self,
+        gpu: &Gpu,
+        pass: &mut CameraPass,
+        features: Features,
+        scene_group: &wgpu::BindGroup,
+        scene: &ProbedScene,
+    ) -> Result<Probe, Error> {
+        let params = CameraParams {
+            width: PROBE_SIDE,
+            height: PROBE_SIDE,
+            seed: combine(scene.seed, PROBE_SEED_STREAM),
+            ..self.template
+        };
+        let paths = u64::from(PROBE_SIDE * PROBE_SIDE);
+        let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
+        let halves = gpu.zeroed(HALVES, 16 * paths)?;
+        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        let layers = LayerSums::new(gpu, &[], scene.groups, paths)?;
+        let outputs = Outputs { film: &film, sightings: &no_sightings, layers: &layers, halves: &halves };
+        let outputs = outputs.group(gpu, pass, scene.maps);
+        let pipeline = pass.pipelines.get(gpu, features.for_probe());
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        let tiles = PROBE_SIDE / TILE_SIZE;
+        for _ in 0..PROBE_SAMPLES {
+            gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
+        }
+        let sums: Vec<[f32; 4]> = gpu.read(&film, 1..1 + paths)?;
+        let halves: Vec<[f32; 4]> = gpu.read(&halves, 0..paths)?;
+        let mean = |sums: &[f32; 4]| Vec3::from_slice(sums) / sums[3].max(1.0);
+        let other = |(all, half): (&[f32; 4], &[f32; 4])| mean(&std::array::from_fn(|k| all[k] - half[k]));
+        let scale = f64::from(self.template.width) * f64::from(self.template.height) / paths as f64;
+        Ok(Probe {
+            radiance: sums.iter().map(mean).collect(),
+            deviation: halves
+                .iter()
+                .zip(sums.iter().zip(&halves).map(other))
+                .map(|(h, o)| 0.5 * (mean(h) - o))
+                .collect(),
+            rays: ray_count(gpu, &film)? as f64 * scale,
+        })
+    }
+
     /// What samples accumulate in.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 4] {
-        [&self.film, &self.layers.light, &self.layers.data, &self.layers.groups]
+    pub fn buffers(&self) -> [&wgpu::Buffer; 5] {
+        [&self.film, &self.halves, &self.layers.light, &self.layers.data, &self.layers.groups]
     }
 
     /// Bytes on the device.
@@ -128,13 +190,41 @@ impl Samples {
         self.buffers().iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// Submits one sample of every pixel.
-    pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, sample_index: u32) {
-        let params = CameraParams { sample_index, ..self.template };
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+    /// Submits a further sample of every pixel.
+    pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup) {
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.template));
         let groups = [scene_group, &self.params_group, &self.outputs_group];
-        let tiles = [params.width.div_ceil(TILE_SIZE), params.height.div_ceil(TILE_SIZE)];
-        gpu.dispatch(&self.pipeline, &groups, tiles);
+        gpu.dispatch(&self.pipeline, &groups, self.size().map(|pixels| pixels.div_ceil(TILE_SIZE)));
+    }
+
+    /// Submits `count` further samples of every pixel of some tiles, which are numbered row by row from the top left. Returns the pixels.
+    pub fn add_to_tiles(
+        &self,
+        gpu: &Gpu,
+        pass: &CameraPass,
+        scene_group: &wgpu::BindGroup,
+        tiles: &[u32],
+        count: u32,
+    ) -> Result<u64, Error> {
+        let [width, height] = self.size();
+        let columns = width.div_ceil(TILE_SIZE);
+        let places: Vec<u32> = tiles.iter().map(|tile| tile % columns | (tile / columns) << 16).collect();
+        let within = |size: u32, place: u32| u64::from((size - TILE_SIZE * place).min(TILE_SIZE));
+        let pixels = tiles.iter().map(|tile| within(width, tile % columns) * within(height, tile / columns)).sum();
+        let params = CameraParams { tile_count: tiles.len() as u32, ..self.template };
+        let params_group = params_group(gpu, pass, &self.params, &places)?;
+        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        // As wide as the kernel takes a row of the list to be.
+        let size = [columns, params.tile_count.div_ceil(columns)];
+        for _ in 0..count {
+            gpu.dispatch(&self.pipeline, &[scene_group, &params_group, &self.outputs_group], size);
+        }
+        Ok(pixels)
+    }
+
+    /// Width and height of the picture, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.template.width, self.template.height]
     }
 
     /// Reads the picture. Blocks.
@@ -159,26 +249,65 @@ impl Samples {
 
     /// Reads the number of rays traced. Blocks.
     pub fn rays(&self, gpu: &Gpu) -> Result<u64, Error> {
-        let words: Vec<u32> = gpu.read(&self.film, 0..4)?;
-        if words[2] > 0 {
-            return Err(Error::CutShort { invocations: words[2] });
-        }
-        Ok(wide([words[0], words[1]]))
+        ray_count(gpu, &self.film)
     }
 }
 
-fn outputs_group(
-    gpu: &Gpu,
-    pass: &CameraPass,
-    maps: &EnergyMaps,
-    film: &wgpu::Buffer,
-    layers: &LayerSums,
-    sightings: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
-    let buffers =
-        [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
-    gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
+/// What the samples of a probe see by.
+pub(crate) struct ProbedScene<'s> {
+    pub seed: u32,
+    pub maps: &'s EnergyMaps,
+    pub groups: &'s LightGroups,
+}
+
+/// A few samples of a small picture.
+#[derive(Clone, Debug)]
+pub(crate) struct Probe {
+    /// Mean radiance of each pixel, W/(m² sr).
+    pub radiance: Vec<Vec3>,
+    /// By which, as a standard deviation, each may differ from what more samples would give.
+    pub deviation: Vec<Vec3>,
+    /// Rays that as many samples of the whole picture take.
+    pub rays: f64,
+}
+
+/// Reads the number of rays traced for a film. Blocks.
+fn ray_count(gpu: &Gpu, film: &wgpu::Buffer) -> Result<u64, Error> {
+    let words: Vec<u32> = gpu.read(film, 0..4)?;
+    if words[2] > 0 {
+        return Err(Error::CutShort { invocations: words[2] });
+    }
+    Ok(wide([words[0], words[1]]))
+}
+
+/// What a dispatch of the camera pass writes.
+struct Outputs<'o> {
+    film: &'o wgpu::Buffer,
+    sightings: &'o wgpu::Buffer,
+    layers: &'o LayerSums,
+    halves: &'o wgpu::Buffer,
+}
+
+impl Outputs<'_> {
+    /// The bind group of the maps' irradiance and these.
+    fn group(&self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> wgpu::BindGroup {
+        let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
+        let layers = self.layers;
+        let buffers = [self.film, self.sightings, &layers.light, &layers.data, &layers.groups, self.halves];
+        let resources = [irradiance].into_iter().chain(buffers.map(|buffer| buffer.as_entire_binding()));
+        gpu.bind_resources(&pass.outputs_layout, resources.collect())
+    }
+}
+
+/// The bind group of params and a list of tiles, column and row in 16 bits each.
+fn params_group(gpu: &Gpu, pass: &CameraPass, params: &wgpu::Buffer, tiles: &[u32]) -> Result<wgpu::BindGroup, Error> {
+    let mut texels: Vec<[u32; 4]> =
+        tiles.chunks(4).map(|four| std::array::from_fn(|k| *four.get(k).unwrap_or(&0))).collect();
+    texels.resize(texels.len().max(1), [0; 4]);
+    let texture = gpu.records(TILES, &texels)?;
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let resources = vec![params.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
+    Ok(gpu.bind_resources(&pass.params_layout, resources))
 }
 
 fn template(scene: &Scene, lights: &Lights) -> CameraParams {
@@ -195,7 +324,7 @@ fn template(scene: &Scene, lights: &Lights) -> CameraParams {
         half_right: (half_width * right).into(),
         focus_distance: camera.focus_distance,
         half_up: (half_height * up).into(),
-        sample_index: 0,
+        tile_count: 0,
         forward: forward.into(),
         seed: combine(settings.seed, SEED_STREAM),
         background: scene.background.into(),

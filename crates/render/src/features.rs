@@ -46,6 +46,8 @@ pub(crate) struct Features {
     data_layers: bool,
     /// Light groups that are kept apart.
     light_groups: u32,
+    /// Every second sample summed by itself.
+    halves: bool,
 }
 
 impl Features {
@@ -69,7 +71,13 @@ impl Features {
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
             light_groups: kept_group_count(&lights.groups) as u32,
+            halves: scene.settings.samples.is_none(),
         }
+    }
+
+    /// Whether every second sample is summed by itself, too.
+    pub fn has_halves(self) -> bool {
+        self.halves
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
@@ -82,7 +90,12 @@ impl Features {
 
     /// The same for camera paths that note what they see of the energy maps.
     pub fn with_sightings(self) -> Self {
-        Self { sightings: true, light_layers: false, data_layers: false, light_groups: 0, ..self }
+        Self { sightings: true, light_layers: false, data_layers: false, light_groups: 0, halves: false, ..self }
+    }
+
+    /// The same for camera paths that probe what has changed.
+    pub fn for_probe(self) -> Self {
+        Self { light_layers: false, data_layers: false, halves: true, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -104,6 +117,7 @@ impl Features {
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),
             ("light_group_count", f64::from(self.light_groups)),
+            ("has_halves", f64::from(self.halves)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
     }

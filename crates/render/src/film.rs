@@ -11,7 +11,7 @@ pub struct Film {
     pub width: u32,
     /// Pixels along y.
     pub height: u32,
-    /// Samples in each pixel.
+    /// Samples in each pixel, at least.
     pub samples: u32,
     /// Mean radiance, W/(m² sr), linear Rec. 709, row by row from the top left.
     pub radiance: Vec<[f32; 3]>,

@@ -18,6 +18,7 @@ use crate::{
     lights::{Emitter, Lights},
     pilot::{Pilot, PilotRound},
     random::combine,
+    refine::PhotonSupply,
     renderer::MOST_IN_FLIGHT,
 };
 
@@ -178,6 +179,13 @@ impl Photons {
         !self.lights.is_empty()
     }
 
+    /// The photons that there are.
+    pub fn supply(&self) -> PhotonSupply {
+        let largest_share = self.lights.iter().map(|light| light.emitter.photon_share).max().unwrap_or(1);
+        // A light's own photons are numbered with 32 bits.
+        PhotonSupply { turns: self.turns, most: u64::from(u32::MAX / largest_share) * self.turns }
+    }
+
     /// How a light emits; none if it does not.
     pub fn emission(&self, number: usize) -> Option<&Emission> {
         self.lights.iter().find(|light| light.emitter.number == number).map(|light| &light.emission)
@@ -230,9 +238,7 @@ impl Photons {
 
     /// Submits photons `range`, which take turns over the emitting lights.
     pub fn emit(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, range: Range<u64>) -> Result<(), Error> {
-        // A light's own photons are numbered with 32 bits.
-        let largest_share = self.lights.iter().map(|light| light.emitter.photon_share).max().unwrap_or(1);
-        let limit = u64::from(u32::MAX / largest_share) * self.turns;
+        let limit = self.supply().most;
         if range.end > limit {
             return Err(Error::TooManyPhotons { index: range.end - 1, limit });
         }

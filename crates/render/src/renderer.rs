@@ -2,22 +2,25 @@
 
 use std::{ops::Range, time::Instant};
 
-use diacaustic_scene::Scene;
+use diacaustic_scene::{LightGroups, Scene};
 use diacaustic_shaders::QueryHit;
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
-    SceneReport, Statistics,
-    camera_pass::{CameraPass, Samples},
+    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, Refinement,
+    RenderParams, SceneReport, Statistics,
+    camera_pass::{CameraPass, ProbedScene, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass},
+    error_pass::ErrorPass,
+    features::Features,
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
     photon_pass::{PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
+    refine::{Course, Step},
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
 };
@@ -45,6 +48,7 @@ pub struct Renderer {
     photon_pass: PhotonPass,
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
+    error_pass: ErrorPass,
     display_pass: DisplayPass,
     query_pass: QueryPass,
     scene: Option<OnDevice>,
@@ -54,14 +58,19 @@ pub struct Renderer {
 #[derive(Debug)]
 struct OnDevice {
     scene: Scene,
+    features: Features,
+    groups: LightGroups,
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
     buffers: SceneBuffers,
     maps: EnergyMaps,
     photons: Photons,
     samples: Samples,
+    course: Course,
     photon_count: u64,
     sample_count: u32,
+    /// Samples over all pixels.
+    sample_sum: u64,
     /// Whether photons came since the sums last became irradiance.
     unresolved: bool,
 }
@@ -87,6 +96,7 @@ impl Renderer {
                 photon_pass: PhotonPass::new(&gpu, &scene_layout),
                 resolve_pass: ResolvePass::new(&gpu),
                 camera_pass: CameraPass::new(&gpu, &scene_layout),
+                error_pass: ErrorPass::new(&gpu),
                 display_pass: DisplayPass::new(&gpu),
                 query_pass: QueryPass::new(&gpu, &scene_layout),
                 gpu: gpu.clone(),
@@ -154,14 +164,18 @@ impl Renderer {
             pilot = Some(PilotReport { time: start.elapsed(), ..report });
         }
         let on_device = OnDevice {
+            course: Course::new(&scene.settings, photons.supply()),
             photons,
             samples,
             scene: scene.clone(),
+            features: host.features,
+            groups: host.lights.groups.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
             buffers,
             maps,
             photon_count: 0,
             sample_count: 0,
+            sample_sum: 0,
             unresolved: true,
         };
         Ok((on_device, pilot))
@@ -194,20 +208,88 @@ impl Renderer {
     /// If no scene is set or the device fails.
     pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        if on_device.unresolved {
-            let units = on_device.photons.units_per_watt;
-            self.resolve_pass.run(&self.gpu, &on_device.maps, units, on_device.photon_count);
-            on_device.unresolved = false;
-        }
+        on_device.resolve(&self.gpu, &self.resolve_pass);
         for number in 1..=count {
-            let group = &on_device.buffers.bind_group;
-            on_device.samples.add(&self.gpu, group, on_device.sample_count);
+            on_device.samples.add(&self.gpu, &on_device.buffers.bind_group);
             on_device.sample_count += 1;
             if number.is_multiple_of(MOST_IN_FLIGHT) {
                 self.gpu.wait()?;
             }
         }
+        on_device.sample_sum += u64::from(count) * on_device.pixels();
         Ok(())
+    }
+
+    /// Takes the render one step further toward the scene's `target_error`, and waits until it is done: photons, until the maps are exact
+    /// enough, then samples where the picture needs them. Where the scene states photons or samples, there are as many. The film may be
+    /// read and shown after every step. Blocks: for less than a second of a usual scene on two cores.
+    ///
+    /// The steps are the same in every run. An application calls either this or [`Renderer::emit_photons`] and [`Renderer::add_samples`], for this
+    /// counts its own work alone; [`Renderer::restart`] begins anew.
+    ///
+    /// # Errors
+    /// If no scene is set, the device fails, or it cut invocations short.
+    pub fn refine(&mut self) -> Result<Refinement, Error> {
+        let course = &self.scene.as_ref().ok_or(Error::NoScene)?.course;
+        match course.next_step() {
+            Step::Emit(numbers) => {
+                let end = numbers.end;
+                self.emit_photons(numbers)?;
+                self.gpu.wait()?;
+                self.on_course(|course| course.note_photons(end))
+            }
+            Step::Probe => self.probe_maps(),
+            Step::Sample(count) => {
+                self.add_samples(count)?;
+                self.gpu.wait()?;
+                self.on_course(|course| course.note_samples(count))
+            }
+            Step::Estimate => {
+                let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+                let (samples, size) = (&on_device.samples, on_device.samples.size());
+                let errors = self.error_pass.run(&self.gpu, &samples.film, &samples.halves, size)?;
+                self.on_course(|course| course.note_errors(&errors))
+            }
+            Step::SampleTiles { tiles, count } => {
+                self.sample_tiles(&tiles, count)?;
+                self.on_course(|course| course.note_tile_samples(count))
+            }
+            Step::Rest => self.on_course(|_| ()),
+        }
+    }
+
+    /// Makes the photons so far enough for [`Renderer::refine`], whose next steps are samples.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn finish_photons(&mut self) -> Result<Refinement, Error> {
+        self.on_course(Course::finish_photons)
+    }
+
+    fn on_course(&mut self, note: impl FnOnce(&mut Course)) -> Result<Refinement, Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        note(&mut on_device.course);
+        Ok(on_device.course.refinement(on_device.mean_samples()))
+    }
+
+    fn probe_maps(&mut self) -> Result<Refinement, Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        let photon_rays = on_device.photons.counts(&self.gpu)?.rays;
+        let probed =
+            ProbedScene { seed: on_device.scene.settings.seed, maps: &on_device.maps, groups: &on_device.groups };
+        let group = &on_device.buffers.bind_group;
+        let probe = on_device.samples.probe(&self.gpu, &mut self.camera_pass, on_device.features, group, &probed)?;
+        self.on_course(|course| course.note_probe(&probe, photon_rays))
+    }
+
+    fn sample_tiles(&mut self, tiles: &[u32], count: u32) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        let group = &on_device.buffers.bind_group;
+        let pixels = on_device.samples.add_to_tiles(&self.gpu, &self.camera_pass, group, tiles, count)?;
+        on_device.sample_sum += pixels * u64::from(count);
+        self.gpu.wait()
     }
 
     /// Submits the drawing of the picture so far over the whole of a texture, which may be of any renderable colour format.
@@ -266,6 +348,7 @@ impl Renderer {
             deposits: counts.deposits,
             photon_rays: counts.rays,
             samples: on_device.sample_count,
+            mean_samples: on_device.mean_samples(),
             camera_rays: on_device.samples.rays(&self.gpu)?,
             ledgers: counts.ledgers,
         })
@@ -313,8 +396,10 @@ impl Renderer {
         for buffer in [&on_device.maps.sums, &on_device.photons.ledger].into_iter().chain(on_device.samples.buffers()) {
             self.gpu.clear(buffer);
         }
+        on_device.course = Course::new(&on_device.scene.settings, on_device.photons.supply());
         on_device.photon_count = 0;
         on_device.sample_count = 0;
+        on_device.sample_sum = 0;
         on_device.unresolved = true;
         Ok(())
     }
@@ -356,6 +441,26 @@ impl Renderer {
     pub fn map_layout(&self, object: usize) -> Result<Option<&MapLayout>, Error> {
         let maps = &self.scene.as_ref().ok_or(Error::NoScene)?.maps;
         Ok(maps.placements.get(object).and_then(Option::as_ref).map(|map| &map.layout))
+    }
+}
+
+impl OnDevice {
+    /// Turns the sums into irradiance, if photons came since the last time.
+    fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
+        if self.unresolved {
+            pass.run(gpu, &self.maps, self.photons.units_per_watt, self.photon_count);
+            self.unresolved = false;
+        }
+    }
+
+    /// Samples of a pixel, on average.
+    fn mean_samples(&self) -> f64 {
+        self.sample_sum as f64 / self.pixels() as f64
+    }
+
+    /// Pixels of the picture.
+    fn pixels(&self) -> u64 {
+        u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height)
     }
 }
 

@@ -92,8 +92,10 @@ pub struct Statistics {
     pub deposits: u64,
     /// Rays of the photon pass.
     pub photon_rays: u64,
-    /// Samples in each pixel.
+    /// Samples in each pixel, at least.
     pub samples: u32,
+    /// Samples in a pixel, on average.
+    pub mean_samples: f64,
     /// Rays of the camera pass, shadow rays among them.
     pub camera_rays: u64,
     /// A ledger for each of [`SceneReport::lights`].

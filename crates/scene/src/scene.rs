@@ -69,10 +69,12 @@ pub struct RenderSettings {
     pub width: u32,
     /// Height of the picture, pixels.
     pub height: u32,
-    /// Camera samples a pixel.
-    pub samples: u32,
-    /// Photons in all, over every light.
-    pub photons: u64,
+    /// Camera samples a pixel; as many as `target_error` asks for if none.
+    pub samples: Option<u32>,
+    /// Photons in all, over every light; as many as `target_error` asks for if none.
+    pub photons: Option<u64>,
+    /// The error at which photons and samples are enough: the root of the mean squared error of the radiance of pixels, relative to it.
+    pub target_error: f32,
     /// Seed of every random number.
     pub seed: u32,
     /// The most surfaces that a photon or a camera path meets before it is cut off.
@@ -130,8 +132,9 @@ impl Default for RenderSettings {
         Self {
             width: 512,
             height: 512,
-            samples: 16,
-            photons: 1_000_000,
+            samples: None,
+            photons: None,
+            target_error: 0.05,
             seed: 0,
             max_depth: 32,
             max_bounces: 8,

@@ -154,10 +154,11 @@ fn check_settings(settings: &RenderSettings) -> Result<(), Error> {
     let at = At(Subject::Render);
     at.number("width", settings.width, 1..=16384, "from 1 to 16384 (pixels)")?;
     at.number("height", settings.height, 1..=16384, "from 1 to 16384 (pixels)")?;
-    at.number("samples", settings.samples, 1.., "1 or greater")?;
-    at.require(u32::try_from(settings.photons).is_ok(), "photons", || {
-        format!("is {}; it must be at most {}", settings.photons, u32::MAX)
-    })?;
+    settings.samples.map_or(Ok(()), |samples| at.number("samples", samples, 1.., "1 or greater"))?;
+    let photons = settings.photons.unwrap_or(0);
+    at.require(u32::try_from(photons).is_ok(), "photons", || format!("is {photons}; it must be at most {}", u32::MAX))?;
+    let below_one = (Bound::Excluded(0.0), Bound::Included(1.0));
+    at.number("target_error", settings.target_error, below_one, "greater than 0 and at most 1, such as 0.05")?;
     at.number("max_depth", settings.max_depth, 1..=1000, "from 1 to 1000")?;
     at.number("max_bounces", settings.max_bounces, 0..=1000, "from 0 to 1000")?;
     if let Some(wavelength) = settings.wavelength {

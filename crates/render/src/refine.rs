@@ -1,0 +1,391 @@
+//! How far a render goes by itself: photons until the maps are exact enough, then samples where the picture still needs them.
+//!
+//! All decisions follow from what the device has computed and counted, never from times, so that a render takes the same course in every run.
+//! `docs/refinement.md` says how.
+
+use std::ops::{Range, RangeInclusive};
+
+use diacaustic_scene::RenderSettings;
+use glam::Vec3;
+
+use crate::{camera_pass::Probe, error_pass::TileErrors};
+
+/// Photons after which the maps are looked at first, as a power of two.
+const FIRST_LOOK: u32 = 14;
+/// Photons between two chances to stop, as a power of two.
+const PHOTONS_AT_ONCE: u32 = 18;
+/// The part of the squared target error that the maps may make up, whatever the rays say.
+const MAP_SHARES: RangeInclusive<f64> = 0.05..=0.5;
+/// Share of the mean radiance, squared, that is added to a pixel's own: that of `shaders/errors.wgsl`.
+const DARKNESS: f32 = 0.01;
+/// The part of a pixel's radiance that the maps must bring for the pixel to tell how exact they are.
+const LEAST_MAP_LIGHT: f32 = 0.05;
+/// Samples of every pixel before errors are looked at.
+const FIRST_SAMPLES: u32 = 4;
+/// Samples at once, over all pixels: so many times the picture.
+const PICTURES_AT_ONCE: usize = 2;
+/// The most samples that a pixel takes of the renderer's own choice.
+const MOST_SAMPLES: u32 = 4096;
+/// One of so many tiles may miss the target: single bright paths keep some from it for long.
+const TILES_FOR_EACH_MISS: usize = 256;
+
+/// What a render works at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Energy maps.
+    Photons,
+    /// The picture.
+    Samples,
+    /// Nothing: it is as exact as asked for.
+    Done,
+}
+
+/// How far a render has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// What comes next.
+    pub stage: Stage,
+    /// Photons emitted, over every light.
+    pub photons: u64,
+    /// Samples of a pixel, on average.
+    pub samples: f64,
+    /// Estimated error: the root of the mean over pixels of the squared error of radiance, relative to it. None until it is known.
+    pub error: Option<f64>,
+}
+
+/// What is to be done next.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Step {
+    /// Emit photons of these numbers.
+    Emit(Range<u64>),
+    /// Probe the maps.
+    Probe,
+    /// Take samples of every pixel.
+    Sample(u32),
+    /// Estimate errors.
+    Estimate,
+    /// Take samples of the pixels of some tiles.
+    SampleTiles { tiles: Vec<u32>, count: u32 },
+    /// Nothing.
+    Rest,
+}
+
+/// The photons that a scene's lights can send.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PhotonSupply {
+    /// Photons after which every light has had its turns once; 0 if none sends any.
+    pub turns: u64,
+    /// The most that there are.
+    pub most: u64,
+}
+
+/// The course of one render.
+#[derive(Clone, Debug)]
+pub(crate) struct Course {
+    stage: Stage,
+    target: f64,
+    supply: PhotonSupply,
+    /// Photons to emit, if the scene says.
+    photons: Option<u64>,
+    /// Samples to take, if the scene says.
+    samples: Option<u32>,
+    emitted: u64,
+    /// Photons after which the maps are looked at next; 0 for a first look without any.
+    next_look: u64,
+    /// What a probe saw without photons.
+    unlit: Vec<Vec3>,
+    /// The last look at photons: how many there were, and what it saw.
+    last_look: Option<(u64, Vec<Vec3>)>,
+    /// Squared errors of the picture that the maps and the camera's samples make.
+    map_error: f64,
+    camera_error: Option<f64>,
+    /// Samples of every pixel.
+    sampled: u32,
+    /// Tiles that need more samples, and how many each before the next estimate.
+    listed: Vec<(u32, u32)>,
+    tile_count: usize,
+}
+
+impl Course {
+    pub fn new(settings: &RenderSettings, supply: PhotonSupply) -> Self {
+        let sends_photons = supply.turns > 0 && settings.photons != Some(0);
+        let photons = settings.photons.map(|photons| photons.next_multiple_of(supply.turns.max(1)));
+        Self {
+            stage: if sends_photons { Stage::Photons } else { Stage::Samples },
+            target: f64::from(settings.target_error),
+            supply,
+            photons,
+            samples: settings.samples,
+            emitted: 0,
+            next_look: 0,
+            unlit: Vec::new(),
+            last_look: None,
+            map_error: 0.0,
+            camera_error: None,
+            sampled: 0,
+            listed: Vec::new(),
+            tile_count: 0,
+        }
+    }
+
+    /// How far it is, after so many samples of a pixel on average.
+    pub fn refinement(&self, samples: f64) -> Refinement {
+        Refinement {
+            stage: self.stage,
+            photons: self.emitted,
+            samples,
+            error: self.camera_error.map(|error| (error + self.map_error).sqrt()),
+        }
+    }
+
+    /// Goes over to samples.
+    pub fn finish_photons(&mut self) {
+        if self.stage == Stage::Photons {
+            self.stage = Stage::Samples;
+        }
+    }
+
+    /// What is to be done next.
+    pub fn next_step(&self) -> Step {
+        match self.stage {
+            Stage::Photons => self.next_photons(),
+            Stage::Samples => self.next_samples(),
+            Stage::Done => Step::Rest,
+        }
+    }
+
+    fn next_photons(&self) -> Step {
+        let end = self.photons.unwrap_or(self.next_look).min(self.supply.most);
+        if self.emitted < end {
+            return Step::Emit(self.emitted..end.min(self.emitted + at_least(self.supply.turns, PHOTONS_AT_ONCE)));
+        }
+        Step::Probe
+    }
+
+    fn next_samples(&self) -> Step {
+        if let Some(samples) = self.samples {
+            return Step::Sample((samples - self.sampled).min(PICTURES_AT_ONCE as u32));
+        }
+        if self.sampled < FIRST_SAMPLES {
+            return Step::Sample(PICTURES_AT_ONCE as u32);
+        }
+        let Some(fewest) = self.listed.iter().map(|&(_, missing)| missing).min() else { return Step::Estimate };
+        let fitting = (PICTURES_AT_ONCE * self.tile_count / self.listed.len()) as u32;
+        Step::SampleTiles {
+            tiles: self.listed.iter().map(|&(tile, _)| tile).collect(),
+            count: fewest.min(fitting.max(1)),
+        }
+    }
+
+    /// Notes photons emitted.
+    pub fn note_photons(&mut self, end: u64) {
+        self.emitted = end;
+        if self.photons.is_some_and(|photons| end >= photons) || end >= self.supply.most {
+            self.stage = Stage::Samples;
+        }
+    }
+
+    /// Notes samples taken of every pixel.
+    pub fn note_samples(&mut self, count: u32) {
+        self.sampled += count;
+        if self.samples.is_some_and(|samples| self.sampled >= samples) {
+            self.stage = Stage::Done;
+        }
+    }
+
+    /// Notes samples taken of the listed tiles.
+    pub fn note_tile_samples(&mut self, count: u32) {
+        self.listed.iter_mut().for_each(|(_, missing)| *missing = missing.saturating_sub(count));
+        self.listed.retain(|&(_, missing)| missing > 0);
+    }
+
+    /// Learns from a probe how exact the maps are; `photon_rays` are all rays of photons so far.
+    pub fn note_probe(&mut self, probe: &Probe, photon_rays: u64) {
+        let now = self.emitted;
+        if now == 0 {
+            self.unlit.clone_from(&probe.radiance);
+            self.next_look = at_least(self.supply.turns, FIRST_LOOK);
+            return;
+        }
+        let last_look = self.last_look.replace((now, probe.radiance.clone()));
+        let Some((before, radiance)) = last_look else {
+            self.next_look = 2 * now;
+            return;
+        };
+        let lit = lit_pixels(&self.unlit, &probe.radiance);
+        let change = |&pixel: &usize| radiance[pixel] - probe.radiance[pixel];
+        // The picture of the first photons differs from that of all by what both lack: for twice as many, by as much as that of all does
+        // from the truth.
+        let scale = before as f64 / (now - before) as f64;
+        self.map_error = scale * relative_error(&probe.radiance, &lit, change);
+        let camera_error = relative_error(&probe.radiance, &lit, |&pixel| probe.deviation[pixel]);
+        let allowed = self.target.powi(2) * self.map_share(photon_rays as f64, camera_error * probe.rays);
+        if self.map_error <= allowed {
+            self.stage = Stage::Samples;
+            return;
+        }
+        let missing = (self.map_error / allowed).clamp(1.25, 2.0);
+        self.next_look = ((now as f64 * missing) as u64).next_multiple_of(self.supply.turns);
+    }
+
+    /// The part of the squared target error that the maps may make up, such that all rays together are fewest: errors fall with the inverse of
+    /// rays, so each side's part goes with the root of its error times its rays. `camera_work` is that product of the camera's samples.
+    fn map_share(&self, photon_rays: f64, camera_work: f64) -> f64 {
+        if self.samples.is_some() {
+            return *MAP_SHARES.end();
+        }
+        let [by_photons, by_samples] = [self.map_error * photon_rays, camera_work].map(f64::sqrt);
+        (by_photons / (by_photons + by_samples).max(f64::MIN_POSITIVE)).clamp(*MAP_SHARES.start(), *MAP_SHARES.end())
+    }
+
+    /// Learns from an estimate where samples are missing.
+    pub fn note_errors(&mut self, errors: &TileErrors) {
+        self.camera_error = Some(errors.mean(|tile| tile.squared_error));
+        let target = self.target.powi(2);
+        let allowed = (target - self.map_error).max((1.0 - MAP_SHARES.end()) * target) as f32;
+        self.tile_count = errors.tiles.len();
+        self.listed.clear();
+        for (tile, (error, found)) in errors.guarded().into_iter().zip(&errors.tiles).enumerate() {
+            if error > allowed && found.samples < MOST_SAMPLES {
+                self.listed.push((tile as u32, missing_samples(found.samples, error / allowed)));
+            }
+        }
+        if self.listed.len() <= self.tile_count / TILES_FOR_EACH_MISS {
+            self.stage = Stage::Done;
+        }
+    }
+}
+
+/// How many samples to add to some whose squared error is so many times what is allowed: a power of two, for few different numbers and even
+/// halves, and at most as many as there are, for the error is an estimate.
+fn missing_samples(samples: u32, excess: f32) -> u32 {
+    let wanted = (samples as f32 * (excess - 1.0)).min(samples as f32);
+    1 << (wanted as u32).max(2).ilog2()
+}
+
+/// Pixels whose light comes from the maps to a part that is worth looking at, by a picture without and one with photons.
+fn lit_pixels(unlit: &[Vec3], lit: &[Vec3]) -> Vec<usize> {
+    let is_lit = |&pixel: &usize| {
+        let (all, of_maps) = (lit[pixel].abs().element_sum(), (lit[pixel] - unlit[pixel]).abs().element_sum());
+        of_maps > LEAST_MAP_LIGHT * all
+    };
+    (0..lit.len().min(unlit.len())).filter(is_lit).collect()
+}
+
+/// At least 2^`bits` photons, of which each light has its turns.
+fn at_least(turns: u64, bits: u32) -> u64 {
+    let turns = turns.max(1);
+    turns << bits.saturating_sub(turns.ilog2())
+}
+
+/// The mean over some pixels of a picture, and channels, of squared deviations relative to it, at most 1 each; 0 without pixels.
+fn relative_error(picture: &[Vec3], pixels: &[usize], deviation: impl Fn(&usize) -> Vec3) -> f64 {
+    let mean = picture.iter().map(|radiance| radiance.element_sum() / 3.0).sum::<f32>() / picture.len().max(1) as f32;
+    let floor = Vec3::splat((DARKNESS * mean * mean).max(f32::MIN_POSITIVE));
+    let relative = |pixel: &usize| {
+        let (radiance, deviation) = (picture[*pixel], deviation(pixel));
+        f64::from((deviation * deviation / (radiance * radiance + floor)).min(Vec3::ONE).element_sum()) / 3.0
+    };
+    pixels.iter().map(relative).sum::<f64>() / pixels.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use diacaustic_shaders::TileError;
+
+    use super::*;
+
+    const SUPPLY: PhotonSupply = PhotonSupply { turns: 3, most: 3 << 32 };
+
+    fn settings(photons: Option<u64>, samples: Option<u32>) -> RenderSettings {
+        RenderSettings { photons, samples, width: 64, height: 32, target_error: 0.1, ..RenderSettings::default() }
+    }
+
+    fn errors(tiles: &[(f32, u32)]) -> TileErrors {
+        let tile = |&(squared_error, samples)| TileError { squared_error, radiance: 1.0, samples, pixels: 64 };
+        TileErrors { columns: tiles.len(), tiles: tiles.iter().map(tile).collect() }
+    }
+
+    #[test]
+    fn stated_numbers_are_kept() {
+        let mut course = Course::new(&settings(Some(1_000_000), Some(5)), SUPPLY);
+        let (mut photons, mut samples) = (0, 0);
+        loop {
+            match course.next_step() {
+                Step::Emit(range) => {
+                    assert!(range.start == photons && (range.end - range.start).is_multiple_of(3));
+                    photons = range.end;
+                    course.note_photons(photons);
+                }
+                Step::Sample(count) => {
+                    samples += count;
+                    course.note_samples(count);
+                }
+                Step::Rest => break,
+                step => panic!("{step:?}"),
+            }
+        }
+        assert_eq!((photons, samples), (1_000_002, 5));
+        assert_eq!(course.stage, Stage::Done);
+    }
+
+    #[test]
+    fn photons_end_when_the_maps_no_longer_change() {
+        let mut course = Course::new(&settings(None, None), SUPPLY);
+        let mut looks = 0;
+        while course.stage == Stage::Photons {
+            match course.next_step() {
+                Step::Emit(range) => course.note_photons(range.end),
+                Step::Probe if course.emitted == 0 => {
+                    let nothing = Probe { radiance: vec![Vec3::ZERO; 8], deviation: vec![Vec3::ZERO; 8], rays: 1e6 };
+                    course.note_probe(&nothing, 0);
+                }
+                Step::Probe => {
+                    looks += 1;
+                    // An error that falls with the root of the photons, of 1 at 10,000, alternately up and down.
+                    let sign = if looks % 2 == 0 { 1.0 } else { -1.0 };
+                    let off = sign * (10_000.0 / course.emitted as f32).sqrt();
+                    let (radiance, deviation) = (vec![Vec3::splat(4.0 + off); 8], vec![Vec3::splat(0.4); 8]);
+                    course.note_probe(&Probe { radiance, deviation, rays: 1e6 }, 1_000_000);
+                }
+                step => panic!("{step:?}"),
+            }
+        }
+        let refinement = course.refinement(0.0);
+        assert!((4..12).contains(&looks) && refinement.photons.is_multiple_of(3), "{looks} looks, {refinement:?}");
+        assert!(course.map_error <= 0.5 * 0.01);
+        assert_eq!(course.next_step(), Step::Sample(2));
+    }
+
+    #[test]
+    fn samples_go_where_errors_are() {
+        let mut course = Course::new(&settings(Some(0), None), SUPPLY);
+        course.note_samples(2);
+        course.note_samples(2);
+        assert_eq!(course.next_step(), Step::Estimate);
+        course.note_errors(&errors(&[(0.0, 4), (0.0, 4), (0.0, 4), (0.2, 4)]));
+        // The third is doubted for its neighbour's sake.
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![2, 3], count: 2 });
+        course.note_tile_samples(2);
+        assert_eq!(course.next_step(), Step::Estimate);
+        course.note_errors(&errors(&[(0.0, 4), (0.0, 4), (0.0, 6), (0.004, 6)]));
+        assert_eq!(course.next_step(), Step::Rest);
+        assert!((course.refinement(0.0).error.unwrap() - 0.001f64.sqrt()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn tiles_that_never_settle_end_at_the_most_samples() {
+        let mut course = Course::new(&settings(Some(0), None), SUPPLY);
+        course.note_samples(FIRST_SAMPLES);
+        course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, 4)]));
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![1], count: 2 });
+        course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, MOST_SAMPLES)]));
+        assert_eq!(course.next_step(), Step::Rest);
+    }
+
+    #[test]
+    fn without_photons_there_are_samples_alone() {
+        let course = Course::new(&settings(None, None), PhotonSupply { turns: 0, most: 0 });
+        assert_eq!(course.stage, Stage::Samples);
+    }
+}

@@ -1,0 +1,62 @@
+// How exact the picture is: of each tile, what two halves of its samples differ by.
+
+import package::layout::error_pass::{error_params, sampled_halves, sampled_pixels, tile_errors, TileError};
+
+/// Pixels of a tile.
+const TILE_PIXELS: u32 = 64u;
+/// Share of the picture's mean radiance, squared, that is added to a pixel's own, so that errors in the dark do not count beyond measure.
+const DARKNESS: f32 = 0.01;
+
+/// What the pixels of the tile have found.
+var<workgroup> squared_errors: array<f32, TILE_PIXELS>;
+var<workgroup> radiances: array<f32, TILE_PIXELS>;
+var<workgroup> samples: array<u32, TILE_PIXELS>;
+var<workgroup> pixels: array<u32, TILE_PIXELS>;
+
+/// The squared error of a pixel's mean, relative to its square; mean of the channels. Of two means of independent samples, half their difference
+/// deviates as much as their mean.
+fn squared_error(all: vec4<f32>, half: vec4<f32>) -> f32 {
+    let others = all - half;
+    if half.w < 1.0 || others.w < 1.0 {
+        return 1.0;
+    }
+    let difference = 0.5 * (half.xyz / half.w - others.xyz / others.w);
+    let mean = all.xyz / all.w;
+    let floor = DARKNESS * error_params.mean_radiance * error_params.mean_radiance;
+    let relative = min(difference * difference / max(mean * mean + floor, vec3<f32>(1e-30)), vec3<f32>(1.0));
+    return (relative.x + relative.y + relative.z) / 3.0;
+}
+
+@compute @workgroup_size(64)
+fn estimate_errors(
+    @builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>, @builtin(local_invocation_index) local: u32,
+) {
+    let pixel = 8u * group.xy + vec2<u32>(local & 7u, local >> 3u);
+    squared_errors[local] = 0.0;
+    radiances[local] = 0.0;
+    samples[local] = 0xffffffffu;
+    pixels[local] = 0u;
+    if pixel.x < error_params.width && pixel.y < error_params.height {
+        let index = pixel.y * error_params.width + pixel.x;
+        let all = sampled_pixels[1u + index];
+        let mean = all.xyz / max(all.w, 1.0);
+        squared_errors[local] = squared_error(all, sampled_halves[index]);
+        radiances[local] = (mean.x + mean.y + mean.z) / 3.0;
+        samples[local] = u32(all.w);
+        pixels[local] = 1u;
+    }
+    for (var step = TILE_PIXELS / 2u; step > 0u; step /= 2u) {
+        workgroupBarrier();
+        if local < step {
+            squared_errors[local] += squared_errors[local + step];
+            radiances[local] += radiances[local + step];
+            samples[local] = min(samples[local], samples[local + step]);
+            pixels[local] += pixels[local + step];
+        }
+    }
+    if local == 0u {
+        let count = f32(max(pixels[0], 1u));
+        tile_errors[group.y * groups.x + group.x] =
+            TileError(squared_errors[0] / count, radiances[0] / count, samples[0], pixels[0]);
+    }
+}
