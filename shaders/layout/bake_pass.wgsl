@@ -12,8 +12,6 @@ struct BakeParams {
     groups_x: u32,
     /// Texels over the area of their surface, 1/m², on average over the map.
     texel_density: f32,
-    /// Unused.
-    padding: array<u32, 3>,
 }
 
 /// A texel that holds surface.

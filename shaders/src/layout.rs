@@ -322,6 +322,30 @@ shared_structs! {
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
+    /// Which texels of a lightmap a dispatch samples.
+    struct BakeParams {
+        /// Index of the object.
+        object: u32,
+        /// Texels among the object's that hold surface before the dispatch's first.
+        first_texel: u32,
+        /// Texels that the dispatch samples.
+        texel_count: u32,
+        /// Workgroups along x.
+        groups_x: u32,
+        /// Texels over the area of their surface, 1/m², on average over the map.
+        texel_density: f32,
+    }
+    /// A texel that holds surface.
+    struct BakeTexel {
+        /// Its column.
+        column: u32,
+        /// Its row.
+        row: u32,
+        /// 0 on the front, 1 on the back.
+        side: u32,
+        /// Index of the list of media in front of it.
+        media: u32,
+    }
     /// What a path saw of the energy maps.
     struct Sighting {
         /// The first texel that it met, or NONE.

@@ -16,7 +16,7 @@ use crate::{
 
 /// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
 const PARAMS: [Binding; 2] = [Binding::Uniform; 2];
-const OUTPUTS: [Binding; 6] = [
+pub(crate) const OUTPUTS: [Binding; 6] = [
     Binding::Texels,
     Binding::ReadWrite,
     Binding::ReadWrite,
@@ -56,7 +56,7 @@ pub(crate) struct Samples {
     pipeline: wgpu::ComputePipeline,
     camera: CameraParams,
     /// The params of every sample's paths, but for its index.
-    paths: PathParams,
+    pub paths: PathParams,
     camera_params: wgpu::Buffer,
     path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
@@ -86,7 +86,7 @@ impl Samples {
             camera: camera_of(scene),
             paths: paths_of(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&path_params, &camera_params]),
-            outputs_group: outputs_group(gpu, pass, maps, &film, &layers, &no_sightings),
+            outputs_group: outputs_group(gpu, &pass.outputs_layout, maps, &film, &layers, &no_sightings),
             path_params,
             camera_params,
             film,
@@ -114,7 +114,7 @@ impl Samples {
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
-        let outputs = outputs_group(gpu, pass, maps, &film, &no_layers, &sightings);
+        let outputs = outputs_group(gpu, &pass.outputs_layout, maps, &film, &no_layers, &sightings);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         self.write_params(gpu, &camera, &seen_paths);
         let tiles = SIGHTINGS_SIDE / TILE_SIZE;
@@ -176,9 +176,10 @@ impl Samples {
     }
 }
 
-fn outputs_group(
+/// Binds what paths read of the maps and accumulate in.
+pub(crate) fn outputs_group(
     gpu: &Gpu,
-    pass: &CameraPass,
+    layout: &wgpu::BindGroupLayout,
     maps: &EnergyMaps,
     film: &wgpu::Buffer,
     layers: &LayerSums,
@@ -187,7 +188,7 @@ fn outputs_group(
     let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
     let buffers =
         [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
-    gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
+    gpu.bind_resources(layout, [irradiance].into_iter().chain(buffers).collect())
 }
 
 fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {
