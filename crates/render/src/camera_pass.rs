@@ -1,7 +1,7 @@
 //! Phase 2: samples of the picture.
 
 use diacaustic_scene::{LightGroups, RenderSettings, Scene};
-use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
+use diacaustic_shaders::{CAMERA, CameraParams, PathParams, Sighting, TILE_SIZE};
 use glam::Vec3;
 
 use crate::{
@@ -15,11 +15,10 @@ use crate::{
     random::combine,
 };
 
-/// The bindings of `shaders/layout/camera_pass.wgsl`.
-const PARAMS: [Binding; 2] = [Binding::Uniform, Binding::Records];
-const OUTPUTS: [Binding; 7] = [
+/// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
+const PARAMS: [Binding; 3] = [Binding::Uniform, Binding::Uniform, Binding::Records];
+pub(crate) const PATH_OUTPUTS: [Binding; 6] = [
     Binding::Texels,
-    Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
@@ -39,7 +38,7 @@ const SIGHTINGS_SEED_STREAM: u32 = 4;
 const PROBE_SIDE: u32 = 128;
 const PROBE_SAMPLES: u32 = 4;
 /// The stream of these paths' seeds.
-const PROBE_SEED_STREAM: u32 = 5;
+const PROBE_SEED_STREAM: u32 = 6;
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
 
@@ -53,10 +52,26 @@ pub(crate) struct CameraPass {
 
 impl CameraPass {
     pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
+        let outputs: Vec<_> = PATH_OUTPUTS.into_iter().chain([Binding::ReadWrite]).collect();
         let params_layout = gpu.layout("camera params", wgpu::ShaderStages::COMPUTE, &PARAMS);
-        let outputs_layout = gpu.layout("camera outputs", wgpu::ShaderStages::COMPUTE, &OUTPUTS);
+        let outputs_layout = gpu.layout("camera outputs", wgpu::ShaderStages::COMPUTE, &outputs);
         let pipelines = Pipelines::new(CAMERA, &[scene_layout, &params_layout, &outputs_layout]);
         Self { params_layout, outputs_layout, pipelines }
+    }
+
+    /// Binds what camera paths read of the maps and accumulate in.
+    fn outputs_group(
+        &self,
+        gpu: &Gpu,
+        maps: &EnergyMaps,
+        film: &wgpu::Buffer,
+        layers: &LayerSums,
+        sightings: &wgpu::Buffer,
+        halves: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        let mut resources = path_outputs(maps, film, layers, sightings);
+        resources.push(halves.as_entire_binding());
+        gpu.bind_resources(&self.outputs_layout, resources)
     }
 }
 
@@ -64,9 +79,11 @@ impl CameraPass {
 #[derive(Debug)]
 pub(crate) struct Samples {
     pipeline: wgpu::ComputePipeline,
-    /// The params of every sample, but for its index.
-    template: CameraParams,
-    params: wgpu::Buffer,
+    camera: CameraParams,
+    /// The params of all paths.
+    pub paths: PathParams,
+    camera_params: wgpu::Buffer,
+    path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
     /// For each pixel the sum of every second sample; an entry without use where the scene states how many samples there are.
@@ -86,18 +103,20 @@ impl Samples {
         maps: &EnergyMaps,
     ) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
-        let params = gpu.uniform::<CameraParams>("camera");
+        let path_params = gpu.uniform::<PathParams>("camera paths");
+        let camera_params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         let halves = gpu.zeroed(HALVES, if features.has_halves() { 16 * pixels } else { 0 })?;
         let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        let outputs = Outputs { film: &film, sightings: &no_sightings, layers: &layers, halves: &halves };
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
-            template: template(scene, lights),
-            params_group: params_group(gpu, pass, &params, &[])?,
-            outputs_group: outputs.group(gpu, pass, maps),
-            params,
+            camera: camera_of(scene),
+            paths: paths_of(scene, lights),
+            params_group: params_group(gpu, pass, [&path_params, &camera_params], &[])?,
+            outputs_group: pass.outputs_group(gpu, maps, &film, &layers, &no_sightings, &halves),
+            path_params,
+            camera_params,
             film,
             halves,
             layers,
@@ -114,22 +133,20 @@ impl Samples {
         settings: &RenderSettings,
         maps: &EnergyMaps,
     ) -> Result<Vec<Sighting>, Error> {
-        let params = CameraParams {
-            width: SIGHTINGS_SIDE,
-            height: SIGHTINGS_SIDE,
+        let camera = CameraParams { width: SIGHTINGS_SIDE, height: SIGHTINGS_SIDE, ..self.camera };
+        let seen_paths = PathParams {
             max_bounces: settings.max_bounces.min(1),
             seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
-            ..self.template
+            ..self.paths
         };
         let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
         let no_halves = gpu.zeroed(HALVES, 0)?;
-        let outputs = Outputs { film: &film, sightings: &sightings, layers: &no_layers, halves: &no_halves };
-        let outputs = outputs.group(gpu, pass, maps);
+        let outputs = pass.outputs_group(gpu, maps, &film, &no_layers, &sightings, &no_halves);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        self.write_params(gpu, &camera, &seen_paths);
         let tiles = SIGHTINGS_SIDE / TILE_SIZE;
         gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
         gpu.read(&sightings, 0..paths)
@@ -145,21 +162,16 @@ impl Samples {
         scene_group: &wgpu::BindGroup,
         scene: &ProbedScene,
     ) -> Result<Probe, Error> {
-        let params = CameraParams {
-            width: PROBE_SIDE,
-            height: PROBE_SIDE,
-            seed: combine(scene.seed, PROBE_SEED_STREAM),
-            ..self.template
-        };
+        let camera = CameraParams { width: PROBE_SIDE, height: PROBE_SIDE, ..self.camera };
+        let probing = PathParams { seed: combine(scene.seed, PROBE_SEED_STREAM), ..self.paths };
         let paths = u64::from(PROBE_SIDE * PROBE_SIDE);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let halves = gpu.zeroed(HALVES, 16 * paths)?;
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         let layers = LayerSums::new(gpu, &[], scene.groups, paths)?;
-        let outputs = Outputs { film: &film, sightings: &no_sightings, layers: &layers, halves: &halves };
-        let outputs = outputs.group(gpu, pass, scene.maps);
+        let outputs = pass.outputs_group(gpu, scene.maps, &film, &layers, &no_sightings, &halves);
         let pipeline = pass.pipelines.get(gpu, features.for_probe());
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        self.write_params(gpu, &camera, &probing);
         let tiles = PROBE_SIDE / TILE_SIZE;
         for _ in 0..PROBE_SAMPLES {
             gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
@@ -168,7 +180,7 @@ impl Samples {
         let halves: Vec<[f32; 4]> = gpu.read(&halves, 0..paths)?;
         let mean = |sums: &[f32; 4]| Vec3::from_slice(sums) / sums[3].max(1.0);
         let other = |(all, half): (&[f32; 4], &[f32; 4])| mean(&std::array::from_fn(|k| all[k] - half[k]));
-        let scale = f64::from(self.template.width) * f64::from(self.template.height) / paths as f64;
+        let scale = f64::from(self.camera.width) * f64::from(self.camera.height) / paths as f64;
         Ok(Probe {
             radiance: sums.iter().map(mean).collect(),
             deviation: halves
@@ -192,7 +204,7 @@ impl Samples {
 
     /// Submits a further sample of every pixel.
     pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup) {
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&self.template));
+        self.write_params(gpu, &self.camera, &self.paths);
         let groups = [scene_group, &self.params_group, &self.outputs_group];
         gpu.dispatch(&self.pipeline, &groups, self.size().map(|pixels| pixels.div_ceil(TILE_SIZE)));
     }
@@ -211,11 +223,11 @@ impl Samples {
         let places: Vec<u32> = tiles.iter().map(|tile| tile % columns | (tile / columns) << 16).collect();
         let within = |size: u32, place: u32| u64::from((size - TILE_SIZE * place).min(TILE_SIZE));
         let pixels = tiles.iter().map(|tile| within(width, tile % columns) * within(height, tile / columns)).sum();
-        let params = CameraParams { tile_count: tiles.len() as u32, ..self.template };
-        let params_group = params_group(gpu, pass, &self.params, &places)?;
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        let camera = CameraParams { tile_count: tiles.len() as u32, ..self.camera };
+        let params_group = params_group(gpu, pass, [&self.path_params, &self.camera_params], &places)?;
+        self.write_params(gpu, &camera, &self.paths);
         // As wide as the kernel takes a row of the list to be.
-        let size = [columns, params.tile_count.div_ceil(columns)];
+        let size = [columns, camera.tile_count.div_ceil(columns)];
         for _ in 0..count {
             gpu.dispatch(&self.pipeline, &[scene_group, &params_group, &self.outputs_group], size);
         }
@@ -224,13 +236,19 @@ impl Samples {
 
     /// Width and height of the picture, pixels.
     pub fn size(&self) -> [u32; 2] {
-        [self.template.width, self.template.height]
+        [self.camera.width, self.camera.height]
+    }
+
+    /// Sets the params of the dispatches that follow.
+    fn write_params(&self, gpu: &Gpu, camera: &CameraParams, paths: &PathParams) {
+        gpu.queue.write_buffer(&self.camera_params, 0, bytemuck::bytes_of(camera));
+        gpu.queue.write_buffer(&self.path_params, 0, bytemuck::bytes_of(paths));
     }
 
     /// Reads the picture. Blocks.
     pub fn read(&self, gpu: &Gpu, samples: u32) -> Result<Film, Error> {
         let sums = self.sums(gpu)?;
-        let (width, height) = (self.template.width, self.template.height);
+        let (width, height) = (self.camera.width, self.camera.height);
         let mean = |[r, g, b, count]: [f32; 4]| [r, g, b].map(|sum| sum / count.max(1.0));
         Ok(Film { width, height, samples, radiance: sums.into_iter().map(mean).collect() })
     }
@@ -244,7 +262,7 @@ impl Samples {
     /// For each pixel the sum of its samples and their number. Blocks.
     fn sums(&self, gpu: &Gpu) -> Result<Vec<[f32; 4]>, Error> {
         self.rays(gpu)?;
-        gpu.read(&self.film, 1..1 + u64::from(self.template.width) * u64::from(self.template.height))
+        gpu.read(&self.film, 1..1 + u64::from(self.camera.width) * u64::from(self.camera.height))
     }
 
     /// Reads the number of rays traced. Blocks.
@@ -280,66 +298,84 @@ fn ray_count(gpu: &Gpu, film: &wgpu::Buffer) -> Result<u64, Error> {
     Ok(wide([words[0], words[1]]))
 }
 
-/// What a dispatch of the camera pass writes.
-struct Outputs<'o> {
-    film: &'o wgpu::Buffer,
-    sightings: &'o wgpu::Buffer,
-    layers: &'o LayerSums,
-    halves: &'o wgpu::Buffer,
-}
-
-impl Outputs<'_> {
-    /// The bind group of the maps' irradiance and these.
-    fn group(&self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> wgpu::BindGroup {
-        let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
-        let layers = self.layers;
-        let buffers = [self.film, self.sightings, &layers.light, &layers.data, &layers.groups, self.halves];
-        let resources = [irradiance].into_iter().chain(buffers.map(|buffer| buffer.as_entire_binding()));
-        gpu.bind_resources(&pass.outputs_layout, resources.collect())
-    }
-}
-
 /// The bind group of params and a list of tiles, column and row in 16 bits each.
-fn params_group(gpu: &Gpu, pass: &CameraPass, params: &wgpu::Buffer, tiles: &[u32]) -> Result<wgpu::BindGroup, Error> {
+fn params_group(gpu: &Gpu, pass: &CameraPass, params: [&wgpu::Buffer; 2], tiles: &[u32]) -> Result<wgpu::BindGroup, Error> {
     let mut texels: Vec<[u32; 4]> =
         tiles.chunks(4).map(|four| std::array::from_fn(|k| *four.get(k).unwrap_or(&0))).collect();
     texels.resize(texels.len().max(1), [0; 4]);
     let texture = gpu.records(TILES, &texels)?;
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let resources = vec![params.as_entire_binding(), wgpu::BindingResource::TextureView(&view)];
+    let mut resources: Vec<_> = params.map(|buffer| buffer.as_entire_binding()).into();
+    resources.push(wgpu::BindingResource::TextureView(&view));
     Ok(gpu.bind_resources(&pass.params_layout, resources))
 }
 
-fn template(scene: &Scene, lights: &Lights) -> CameraParams {
+/// Binds what paths read of the maps and accumulate in.
+pub(crate) fn outputs_group(
+    gpu: &Gpu,
+    layout: &wgpu::BindGroupLayout,
+    maps: &EnergyMaps,
+    film: &wgpu::Buffer,
+    layers: &LayerSums,
+    sightings: &wgpu::Buffer,
+) -> wgpu::BindGroup {
+    gpu.bind_resources(layout, path_outputs(maps, film, layers, sightings))
+}
+
+fn path_outputs<'o>(
+    maps: &'o EnergyMaps,
+    film: &'o wgpu::Buffer,
+    layers: &'o LayerSums,
+    sightings: &'o wgpu::Buffer,
+) -> Vec<wgpu::BindingResource<'o>> {
+    let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
+    let buffers =
+        [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
+    [irradiance].into_iter().chain(buffers).collect()
+}
+
+fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {
     let camera = &scene.camera;
     let settings = &scene.settings;
-    let [right, up, forward] = camera.axes();
+    let [_, _, forward] = camera.axes();
     let media = media_keys(scene, camera.position);
     let index = medium_index(scene, media[0]);
-    let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
-    let half_width = half_height * settings.width as f32 / settings.height as f32;
-    CameraParams {
+    PathParams {
         position: camera.position.into(),
-        aperture_radius: camera.aperture_radius,
-        half_right: (half_width * right).into(),
-        focus_distance: camera.focus_distance,
-        half_up: (half_height * up).into(),
-        tile_count: 0,
+        sample_index: 0,
         forward: forward.into(),
         seed: combine(settings.seed, SEED_STREAM),
         background: scene.background.into(),
         max_depth: settings.max_depth,
         ambient: scene.ambient.into(),
         light_count: lights.records.len() as u32,
-        lens_right: right.into(),
-        width: settings.width,
-        lens_up: up.into(),
-        height: settings.height,
         media,
         sphere_count: lights.sphere_count as u32,
         first_sky_light: lights.first_sky as u32,
         max_bounces: settings.max_bounces,
         exposure: 1.0 / (index * index),
+    }
+}
+
+fn camera_of(scene: &Scene) -> CameraParams {
+    let camera = &scene.camera;
+    let settings = &scene.settings;
+    let [right, up, _] = camera.axes();
+    let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
+    let half_width = half_height * settings.width as f32 / settings.height as f32;
+    CameraParams {
+        half_right: (half_width * right).into(),
+        aperture_radius: camera.aperture_radius,
+        half_up: (half_height * up).into(),
+        focus_distance: camera.focus_distance,
+        lens_right: right.into(),
+        width: settings.width,
+        lens_up: up.into(),
+        height: settings.height,
+        tile_count: 0,
+        padding_0: 0,
+        padding_1: 0,
+        padding_2: 0,
         filter_inverse_cdf: filter_inverse_cdf(settings.filter),
     }
 }

@@ -23,6 +23,7 @@ pub use diacaustic_surface::MapLayout;
 pub use {glam, wgpu};
 
 mod aim;
+mod bake;
 mod camera_pass;
 mod display_pass;
 mod energy_map;
@@ -50,6 +51,7 @@ mod statistics;
 mod texture_records;
 
 pub use aim::Emission;
+pub use bake::{BakeOptions, Lightmap, SurfacePlace};
 pub use display_pass::RenderParams;
 pub use energy_map::EnergyMap;
 pub use error::Error;

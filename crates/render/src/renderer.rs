@@ -8,8 +8,9 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, Refinement,
-    RenderParams, SceneReport, Statistics,
+    BakeOptions, Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, Lightmap, LoopLimit, MapSize,
+    PilotReport, Refinement, RenderParams, SceneReport, Statistics,
+    bake::{BakePass, BakeScene, bake},
     camera_pass::{CameraPass, ProbedScene, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass},
@@ -49,6 +50,7 @@ pub struct Renderer {
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
     error_pass: ErrorPass,
+    bake_pass: BakePass,
     display_pass: DisplayPass,
     query_pass: QueryPass,
     scene: Option<OnDevice>,
@@ -58,10 +60,10 @@ pub struct Renderer {
 #[derive(Debug)]
 struct OnDevice {
     scene: Scene,
-    features: Features,
     groups: LightGroups,
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
+    features: Features,
     buffers: SceneBuffers,
     maps: EnergyMaps,
     photons: Photons,
@@ -73,6 +75,26 @@ struct OnDevice {
     sample_sum: u64,
     /// Whether photons came since the sums last became irradiance.
     unresolved: bool,
+}
+
+impl OnDevice {
+    /// Turns the sums of the photons so far into irradiance, if that is not done.
+    fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
+        if self.unresolved {
+            pass.run(gpu, &self.maps, self.photons.units_per_watt, self.photon_count);
+            self.unresolved = false;
+        }
+    }
+
+    /// Samples of a pixel, on average.
+    fn mean_samples(&self) -> f64 {
+        self.sample_sum as f64 / self.pixels() as f64
+    }
+
+    /// Pixels of the picture.
+    fn pixels(&self) -> u64 {
+        u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height)
+    }
 }
 
 impl Renderer {
@@ -97,6 +119,7 @@ impl Renderer {
                 resolve_pass: ResolvePass::new(&gpu),
                 camera_pass: CameraPass::new(&gpu, &scene_layout),
                 error_pass: ErrorPass::new(&gpu),
+                bake_pass: BakePass::new(&gpu, &scene_layout),
                 display_pass: DisplayPass::new(&gpu),
                 query_pass: QueryPass::new(&gpu, &scene_layout),
                 gpu: gpu.clone(),
@@ -168,9 +191,9 @@ impl Renderer {
             photons,
             samples,
             scene: scene.clone(),
-            features: host.features,
             groups: host.lights.groups.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
+            features: host.features,
             buffers,
             maps,
             photon_count: 0,
@@ -336,6 +359,31 @@ impl Renderer {
         on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
     }
 
+    /// Makes an object's lightmap: what light meets its surface, by the photons emitted so far and by paths that begin at each texel. It is of
+    /// all light groups together; none if the object is no receiver. No samples of the picture are needed.
+    ///
+    /// Compiles the kernel, if no scene before made use of the same. Blocks until the map is done: on a software adapter some microseconds for
+    /// each texel and sample.
+    ///
+    /// # Errors
+    /// If no scene is set, the scene has no such object, the device fails, or it cut invocations short.
+    pub fn bake(&mut self, object: usize, options: &BakeOptions) -> Result<Option<Lightmap>, Error> {
+        let Some(energy_map) = self.energy_map(object)? else { return Ok(None) };
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        let Some(placement) = &on_device.maps.placements[object] else { return Ok(None) };
+        let of = BakeScene {
+            scene: &on_device.scene,
+            origins: &on_device.origins,
+            features: on_device.features,
+            maps: &on_device.maps,
+            group: &on_device.buffers.bind_group,
+            paths: on_device.samples.paths,
+        };
+        let (gpu, pass) = (&self.gpu, &mut self.bake_pass);
+        gpu.guarded(|| bake(gpu, pass, &of, (object, &placement.layout), &energy_map, *options)).map(Some)
+    }
+
     /// Reads what the device has counted. Blocks until all submitted work is done.
     ///
     /// # Errors
@@ -441,26 +489,6 @@ impl Renderer {
     pub fn map_layout(&self, object: usize) -> Result<Option<&MapLayout>, Error> {
         let maps = &self.scene.as_ref().ok_or(Error::NoScene)?.maps;
         Ok(maps.placements.get(object).and_then(Option::as_ref).map(|map| &map.layout))
-    }
-}
-
-impl OnDevice {
-    /// Turns the sums into irradiance, if photons came since the last time.
-    fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
-        if self.unresolved {
-            pass.run(gpu, &self.maps, self.photons.units_per_watt, self.photon_count);
-            self.unresolved = false;
-        }
-    }
-
-    /// Samples of a pixel, on average.
-    fn mean_samples(&self) -> f64 {
-        self.sample_sum as f64 / self.pixels() as f64
-    }
-
-    /// Pixels of the picture.
-    fn pixels(&self) -> u64 {
-        u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height)
     }
 }
 
