@@ -6,11 +6,11 @@
 mod layout;
 
 pub use layout::{
-    AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing, Light,
-    MAX_AIM_TARGETS, Material, MaterialTextures, NONE, Object, PathParams, PhotonParams, QueryHit, QueryRay,
+    AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing,
+    Light, MAX_AIM_TARGETS, Material, MaterialTextures, NONE, Object, PathParams, PhotonParams, QueryHit, QueryRay,
     RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct,
-    Sighting, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger, light_kind,
-    light_layer, material_kind, texture_flag, triangle_flag,
+    Sighting, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger,
+    light_kind, light_layer, material_kind, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.

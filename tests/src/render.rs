@@ -39,13 +39,23 @@ pub fn emit(scene: &Scene, photons: u64) -> Renderer {
     renderer
 }
 
+/// The photons that a scene states, or a million.
+pub fn photons_of(scene: &Scene) -> u64 {
+    scene.settings.photons.unwrap_or(1_000_000)
+}
+
+/// The samples that a scene states, or sixteen.
+pub fn samples_of(scene: &Scene) -> u32 {
+    scene.settings.samples.unwrap_or(16)
+}
+
 /// A picture of the scene with its own numbers of photons and samples.
 ///
 /// # Panics
 /// If the scene cannot be rendered.
 pub fn render(scene: &Scene) -> Film {
-    let mut renderer = emit(scene, scene.settings.photons);
-    renderer.add_samples(scene.settings.samples).unwrap_or_else(|error| panic!("{error}"));
+    let mut renderer = emit(scene, photons_of(scene));
+    renderer.add_samples(samples_of(scene)).unwrap_or_else(|error| panic!("{error}"));
     renderer.film().unwrap_or_else(|error| panic!("{error}"))
 }
 

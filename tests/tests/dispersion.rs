@@ -4,7 +4,7 @@ use std::{f64::consts::PI, sync::Arc};
 
 use diacaustic::{EnergyMap, Film};
 use diacaustic_scene::{Dispersion, Material, MaterialKind, Mesh, Object, Scene, substance};
-use diacaustic_tests::{emit, render, scene};
+use diacaustic_tests::{emit, render, samples_of, scene};
 use glam::{Affine3A, DVec3, Vec3};
 
 fn glass(ior: f32, dispersion: Dispersion) -> MaterialKind {
@@ -197,7 +197,7 @@ fn light_of_single_wavelengths_adds_up_to_the_colour() {
         let mut renderer = emit(&scene, 1 << 18);
         let map = renderer.energy_map(1).unwrap().unwrap();
         let flux = (0..map.sums.len()).map(|texel| map.flux(texel)).sum::<DVec3>();
-        renderer.add_samples(scene.settings.samples).unwrap();
+        renderer.add_samples(samples_of(&scene)).unwrap();
         (flux, mean(&renderer.film().unwrap()))
     };
     let (maps, pictures): (Vec<_>, Vec<_>) = (1..9).map(|seed| with_seed(seed, FORMAL)).unzip();

@@ -2,7 +2,7 @@
 
 use diacaustic::{FARTHEST_DEPTH, Film, LayerImage, LayerValues};
 use diacaustic_scene::{Layer, LightKind, Scene};
-use diacaustic_tests::{emit, render, scene};
+use diacaustic_tests::{emit, photons_of, render, samples_of, scene};
 use glam::{DVec3, Vec3};
 
 /// A picture with its layers.
@@ -13,8 +13,8 @@ struct Rendered {
 
 impl Rendered {
     fn of(scene: &Scene) -> Self {
-        let mut renderer = emit(scene, scene.settings.photons);
-        renderer.add_samples(scene.settings.samples).unwrap();
+        let mut renderer = emit(scene, photons_of(&scene));
+        renderer.add_samples(samples_of(&scene)).unwrap();
         Self { film: renderer.film().unwrap(), layers: renderer.layers().unwrap() }
     }
 
@@ -157,7 +157,7 @@ fn direct_light_is_the_picture_without_photons_and_bounces() {
     // Phong's ambient light counts as indirect.
     let mut alone = variety("max_bounces = 0, seed = 3");
     alone.ambient = Vec3::ZERO;
-    alone.settings.photons = 0;
+    alone.settings.photons = Some(0);
     let expected = picture(&render(&alone));
     assert_close(&sum_of(&all, &["emission", "direct"]), &expected, 1e-5, "emission and direct light");
 }
@@ -181,7 +181,7 @@ fn without_bounces_the_rest_is_the_caustic() {
     let rendered = Rendered::of(&scene);
     let indirect = rendered.vectors("indirect");
     assert!(indirect.iter().all(|&value| value == Vec3::ZERO), "without bounces and ambient light");
-    scene.settings.photons *= 2;
+    scene.settings.photons = Some(2 * photons_of(&scene));
     let more = Rendered::of(&scene);
     assert_eq!(more.layer("emission"), rendered.layer("emission"));
     assert_eq!(more.layer("direct"), rendered.layer("direct"));
@@ -326,13 +326,13 @@ fn a_single_sample_knows_no_variance() {
 #[test]
 fn restarting_forgets_the_layers() {
     let scene = with_all_layers(variety("max_bounces = 1"));
-    let mut renderer = emit(&scene, scene.settings.photons);
+    let mut renderer = emit(&scene, photons_of(&scene));
     let mut layers = Vec::new();
     for _ in 0..2 {
         renderer.add_samples(2).unwrap();
         layers.push(renderer.layers().unwrap());
         renderer.restart().unwrap();
-        renderer.emit_photons(0..scene.settings.photons).unwrap();
+        renderer.emit_photons(0..photons_of(&scene)).unwrap();
     }
     assert_eq!(layers[0], layers[1]);
 }

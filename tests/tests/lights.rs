@@ -143,7 +143,7 @@ fn under_environment(size: [u32; 2], rotate: f32, texel: impl Fn(u32, u32) -> f3
     let mut scene = lit_floor("{ type = \"point\", position = [0, 1, 0], flux = 1 }");
     let map = RadianceMap { width: size[0], height: size[1], texels };
     scene.lights[0].kind = LightKind::Environment { map: map.into(), rotate, scale: Vec3::splat(2.0) };
-    scene.settings.samples = 256;
+    scene.settings.samples = Some(256);
     scene
 }
 
@@ -235,7 +235,7 @@ fn many_lights_give_the_sum_of_each() {
     ];
     let each: f64 = lights.iter().map(|light| irradiance(&lit_floor(light)).y).sum();
     let mut all = lit_floor(&lights.join(", "));
-    all.settings.samples = 4096;
+    all.settings.samples = Some(4096);
     let found = irradiance(&all).y;
     assert!((found / each - 1.0).abs() < 3e-3, "{found}, sum {each}");
 }

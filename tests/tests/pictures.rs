@@ -10,9 +10,9 @@ fn compare_with_reference(name: &str) -> Option<[Comparison; 3]> {
     let reference = shared_file(name, &format!("reference/{name}.exr"))?;
     let scene_file = Path::new(repository()).join(format!("tests/scenes/reference-{name}.toml"));
     let mut scene = load_scene(&scene_file).unwrap_or_else(|error| panic!("{error}")).scene;
-    scene.settings.samples = 8;
+    scene.settings.samples = Some(8);
     let complete = render(&scene);
-    scene.settings.photons = 0;
+    scene.settings.photons = Some(0);
     let without_photons = render(&scene);
 
     let reference = read_exr(&reference);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use diacaustic::{Film, Renderer};
 use diacaustic_scene::{MaterialKind, Scene, load_scene};
-use diacaustic_tests::{renderer, repository};
+use diacaustic_tests::{photons_of, renderer, repository, samples_of};
 
 /// The scene files, sorted.
 fn scene_files() -> Vec<PathBuf> {
@@ -28,8 +28,8 @@ fn load(file: &Path) -> (String, Scene) {
 fn reduced(mut scene: Scene) -> Scene {
     scene.settings.width = 96;
     scene.settings.height = 96;
-    scene.settings.samples = 4;
-    scene.settings.photons = 60_000;
+    scene.settings.samples = Some(4);
+    scene.settings.photons = Some(60_000);
     scene
 }
 
@@ -90,8 +90,8 @@ fn every_scene_renders_to_a_picture_with_a_caustic() {
         let scene = reduced(scene);
         let mut renderer = renderer(&scene);
         assert_unrendered_is_zero(&name, &scene, &renderer);
-        renderer.emit_photons(0..scene.settings.photons).unwrap();
-        renderer.add_samples(scene.settings.samples).unwrap();
+        renderer.emit_photons(0..photons_of(&scene)).unwrap();
+        renderer.add_samples(samples_of(&scene)).unwrap();
         assert_finite_and_lit(&name, &renderer.film().unwrap(), scene.has_dispersion());
         let statistics = renderer.statistics().unwrap();
         assert!(statistics.deposits > 0, "{name}: no photon was deposited");

@@ -14,6 +14,11 @@ pub(crate) fn parse_seed(text: &str) -> Result<u32, String> {
     parse_whole(text, 0)
 }
 
+pub(crate) fn parse_target_error(text: &str) -> Result<f32, String> {
+    let error = text.parse().ok().filter(|error| *error > 0.0 && *error <= 1.0);
+    error.ok_or_else(|| "expected a number greater than 0 and at most 1, such as 0.05".to_owned())
+}
+
 /// A whole number in decimal digits, between which underscores may stand.
 fn parse_whole(text: &str, least: u32) -> Result<u32, String> {
     let expected = || format!("expected a whole number from {least} to {}, such as 1000 or 1_000", u32::MAX);
@@ -45,6 +50,10 @@ mod tests {
         }
         assert_eq!((parse_photons("0"), parse_photons("4_294_967_295")), (Ok(0), Ok(u64::from(u32::MAX))));
         assert!(parse_samples("0").unwrap_err().contains("from 1 to"));
+        for bad in ["0", "-1", "1.5", "nan", "inf", "5%", ""] {
+            assert!(parse_target_error(bad).is_err(), "{bad:?}");
+        }
+        assert_eq!(parse_target_error("0.05"), Ok(0.05));
         for bad in ["0", "-1", "nan", "inf", "1e300", "1s", ""] {
             assert!(parse_seconds(bad).is_err(), "{bad:?}");
         }

@@ -59,6 +59,19 @@ impl Progress {
         result
     }
 
+    /// Begins work whose end is not known.
+    pub fn measure(self, name: &'static str) -> Meter {
+        let spinner = (self == Self::Bars).then(|| {
+            let spinner = ProgressBar::new_spinner();
+            spinner.set_style(style("{prefix:8} {spinner} {msg}"));
+            spinner.set_prefix(name);
+            spinner.enable_steady_tick(SPINNER_STEP);
+            spinner
+        });
+        let now = Instant::now();
+        Meter { progress: self, name, start: now, last_line: now, spinner }
+    }
+
     /// Begins to count work of known length.
     pub fn count(self, name: &'static str, total: u64) -> Counter {
         let bar = (self == Self::Bars).then(|| {
@@ -131,6 +144,38 @@ impl Counter {
     }
 }
 
+/// Tells how far work is whose end is not known.
+#[derive(Debug)]
+pub(crate) struct Meter {
+    progress: Progress,
+    name: &'static str,
+    start: Instant,
+    last_line: Instant,
+    spinner: Option<ProgressBar>,
+}
+
+impl Meter {
+    /// Says how far it is.
+    pub fn set(&mut self, state: &str) {
+        if let Some(spinner) = &self.spinner {
+            spinner.set_message(state.to_owned());
+        } else if self.last_line.elapsed() >= BETWEEN_LINES {
+            self.last_line = Instant::now();
+            self.progress.say(format_args!("{}: {state}, {} so far", self.name, Seconds(self.start.elapsed())));
+        }
+    }
+
+    /// Ends the work; returns the time since it began.
+    pub fn finish(self, state: &str) -> Duration {
+        if let Some(spinner) = &self.spinner {
+            spinner.finish_and_clear();
+        }
+        let took = self.start.elapsed();
+        self.progress.say(format_args!("{}: {state} in {}", self.name, Seconds(took)));
+        took
+    }
+}
+
 /// How many a second; 0 if no time passed.
 pub(crate) fn rate(count: u64, time: Duration) -> f64 {
     if time.is_zero() { 0.0 } else { count as f64 / time.as_secs_f64() }
@@ -189,6 +234,9 @@ mod tests {
         let mut counter = Progress::Bars.count("photons", 10);
         counter.set(5);
         counter.finish(10);
+        let mut meter = Progress::Bars.measure("samples");
+        meter.set("4.0 a pixel");
+        meter.finish("5.0 a pixel");
         assert_eq!(Progress::Bars.spin("bvh", || 3), 3);
     }
 }

@@ -6,7 +6,7 @@ mod warnings;
 use std::time::{Duration, Instant};
 
 use diacaustic::{
-    Renderer, RendererOptions, SceneReport,
+    Refinement, Renderer, RendererOptions, SceneReport, Stage,
     scene::{LoadedScene, Scene, Warning},
 };
 use diacaustic_headless::{Gpu, OpenOptions};
@@ -20,6 +20,9 @@ use crate::{
     progress::{Metric, Progress, Seconds},
     scene_arguments::SceneArguments,
 };
+
+/// Photons where the scene leaves their number open and no picture tells how many are enough.
+const PHOTONS_WITHOUT_CAMERA: u64 = 1_000_000;
 
 /// What every command that sends photons takes.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
@@ -55,6 +58,8 @@ pub(crate) struct Session {
     pub renderer: Renderer,
     pub built: SceneReport,
     pub time_limit_reached: bool,
+    /// The picture's estimated error, relative to its radiance.
+    pub error: Option<f64>,
     pub times: Times,
     /// What was said about the scene.
     warnings: Vec<Warning>,
@@ -93,14 +98,15 @@ impl Session {
             Seconds(times.scene)
         ));
         gpu.check()?;
-        Ok(Self { progress, scene, gpu, renderer, built, time_limit_reached: false, times, warnings })
+        Ok(Self { progress, scene, gpu, renderer, built, time_limit_reached: false, error: None, times, warnings })
     }
 
-    /// Emits the scene's photons, and says why if no caustic came of them.
+    /// Emits the scene's photons for maps that no picture is rendered of, and says why if no caustic came of them.
     pub fn emit_photons(&mut self, deadline: Option<Instant>) -> Result<(), Error> {
-        if self.built.photon_turns > 0 && self.scene.settings.photons > 0 {
+        let photons = self.scene.settings.photons.unwrap_or(PHOTONS_WITHOUT_CAMERA);
+        if self.built.photon_turns > 0 && photons > 0 {
             let turns = self.built.photon_turns;
-            let total = rounded_photons(self.scene.settings.photons, turns);
+            let total = rounded_photons(photons, turns);
             let deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
             let mut counter = self.progress.count("photons", total);
             let (renderer, gpu) = (&mut self.renderer, &self.gpu);
@@ -114,26 +120,60 @@ impl Session {
             self.time_limit_reached |= done < total;
             self.times.photons = counter.finish(done);
         }
+        self.warn_about_photons()
+    }
+
+    /// Renders until the scene's numbers of photons and samples, or its target error, are reached, or time is up; says why if no caustic came
+    /// of the photons.
+    pub fn refine(&mut self, deadline: Option<Instant>) -> Result<(), Error> {
+        let photon_deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
+        let mut meter = self.progress.measure("photons");
+        let mut stage = Stage::Photons;
+        let mut refinement = self.renderer.refinement()?;
+        while refinement.stage != Stage::Done {
+            if stage == Stage::Photons && refinement.stage == Stage::Samples {
+                self.times.photons = meter.finish(&photons_so_far(&refinement));
+                self.warn_about_photons()?;
+                meter = self.progress.measure("samples");
+            }
+            stage = refinement.stage;
+            let start = Instant::now();
+            refinement = self.renderer.refine()?;
+            self.gpu.check()?;
+            let next_end = Instant::now() + start.elapsed();
+            let is_over = |deadline: Option<Instant>| deadline.is_some_and(|deadline| next_end > deadline);
+            if refinement.stage == Stage::Photons && refinement.photons > 0 && is_over(photon_deadline) {
+                refinement = self.renderer.finish_photons()?;
+                self.time_limit_reached = true;
+            } else if refinement.stage == Stage::Samples && refinement.samples > 0.0 && is_over(deadline) {
+                self.time_limit_reached = true;
+                break;
+            }
+            meter.set(&match stage {
+                Stage::Photons => photons_so_far(&refinement),
+                Stage::Samples | Stage::Done => samples_so_far(&refinement),
+            });
+        }
+        self.times.samples = meter.finish(&samples_so_far(&refinement));
+        self.error = refinement.error;
+        Ok(())
+    }
+
+    /// Says why, if no caustic came of the photons.
+    fn warn_about_photons(&self) -> Result<(), Error> {
         let counted = self.renderer.statistics()?;
         for warning in about_photons(&self.scene, &self.warnings, &self.built, &counted) {
             self.progress.warn(warning);
         }
         Ok(())
     }
+}
 
-    /// Adds the scene's samples.
-    pub fn add_samples(&mut self, deadline: Option<Instant>) -> Result<(), Error> {
-        let total = u64::from(self.scene.settings.samples);
-        let mut counter = self.progress.count("samples", total);
-        let (renderer, gpu) = (&mut self.renderer, &self.gpu);
-        let done = in_chunks(total, 1, deadline, |numbers| {
-            renderer.add_samples((numbers.end - numbers.start) as u32)?;
-            renderer.wait()?;
-            counter.set(numbers.end);
-            Ok::<_, Error>(gpu.check()?)
-        })?;
-        self.time_limit_reached |= done < total;
-        self.times.samples = counter.finish(done);
-        Ok(())
-    }
+fn photons_so_far(refinement: &Refinement) -> String {
+    Metric(refinement.photons as f64).to_string().trim_end().to_owned()
+}
+
+fn samples_so_far(refinement: &Refinement) -> String {
+    let error = refinement.error.map_or(String::new(), |error| format!(", estimated error {:.1} %", 100.0 * error));
+    format!("{:.1} a pixel{error}", refinement.samples)
 }

@@ -110,8 +110,12 @@ pub struct Photons {
 /// The camera pass.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct CameraRays {
-    /// Samples in each pixel.
+    /// Samples in each pixel, at least.
     pub samples: u32,
+    /// Samples in a pixel, on average.
+    pub mean_samples: f64,
+    /// The root of the mean squared error of pixels' radiance, relative to it, as estimated; none where samples are stated.
+    pub estimated_error: Option<f64>,
     /// Rays, shadow rays among them.
     pub rays: u64,
     /// Samples a second, over every pixel.

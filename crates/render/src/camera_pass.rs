@@ -220,7 +220,7 @@ impl Samples {
     ) -> Result<u64, Error> {
         let [width, height] = self.size();
         let columns = width.div_ceil(TILE_SIZE);
-        let places: Vec<u32> = tiles.iter().map(|tile| tile % columns | (tile / columns) << 16).collect();
+        let places: Vec<u32> = tiles.iter().map(|tile| (tile % columns) | ((tile / columns) << 16)).collect();
         let within = |size: u32, place: u32| u64::from((size - TILE_SIZE * place).min(TILE_SIZE));
         let pixels = tiles.iter().map(|tile| within(width, tile % columns) * within(height, tile / columns)).sum();
         let camera = CameraParams { tile_count: tiles.len() as u32, ..self.camera };
@@ -299,7 +299,12 @@ fn ray_count(gpu: &Gpu, film: &wgpu::Buffer) -> Result<u64, Error> {
 }
 
 /// The bind group of params and a list of tiles, column and row in 16 bits each.
-fn params_group(gpu: &Gpu, pass: &CameraPass, params: [&wgpu::Buffer; 2], tiles: &[u32]) -> Result<wgpu::BindGroup, Error> {
+fn params_group(
+    gpu: &Gpu,
+    pass: &CameraPass,
+    params: [&wgpu::Buffer; 2],
+    tiles: &[u32],
+) -> Result<wgpu::BindGroup, Error> {
     let mut texels: Vec<[u32; 4]> =
         tiles.chunks(4).map(|four| std::array::from_fn(|k| *four.get(k).unwrap_or(&0))).collect();
     texels.resize(texels.len().max(1), [0; 4]);

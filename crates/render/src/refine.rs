@@ -15,7 +15,9 @@ const FIRST_LOOK: u32 = 14;
 /// Photons between two chances to stop, as a power of two.
 const PHOTONS_AT_ONCE: u32 = 18;
 /// The part of the squared target error that the maps may make up, whatever the rays say.
-const MAP_SHARES: RangeInclusive<f64> = 0.05..=0.5;
+const MAP_SHARES: RangeInclusive<f64> = 0.1..=0.5;
+/// The part of a probe's rays that samples placed by need take for the same error.
+const PLACED_RAYS: f64 = 0.25;
 /// Share of the mean radiance, squared, that is added to a pixel's own: that of `shaders/errors.wgsl`.
 const DARKNESS: f32 = 0.01;
 /// The part of a pixel's radiance that the maps must bring for the pixel to tell how exact they are.
@@ -219,7 +221,7 @@ impl Course {
         let scale = before as f64 / (now - before) as f64;
         self.map_error = scale * relative_error(&probe.radiance, &lit, change);
         let camera_error = relative_error(&probe.radiance, &lit, |&pixel| probe.deviation[pixel]);
-        let allowed = self.target.powi(2) * self.map_share(photon_rays as f64, camera_error * probe.rays);
+        let allowed = self.target.powi(2) * self.map_share(photon_rays as f64, camera_error * PLACED_RAYS * probe.rays);
         if self.map_error <= allowed {
             self.stage = Stage::Samples;
             return;

@@ -281,6 +281,15 @@ impl Renderer {
         }
     }
 
+    /// How far [`Renderer::refine`] has come.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn refinement(&self) -> Result<Refinement, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        Ok(on_device.course.refinement(on_device.mean_samples()))
+    }
+
     /// Makes the photons so far enough for [`Renderer::refine`], whose next steps are samples.
     ///
     /// # Errors
@@ -292,7 +301,7 @@ impl Renderer {
     fn on_course(&mut self, note: impl FnOnce(&mut Course)) -> Result<Refinement, Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         note(&mut on_device.course);
-        Ok(on_device.course.refinement(on_device.mean_samples()))
+        self.refinement()
     }
 
     fn probe_maps(&mut self) -> Result<Refinement, Error> {

@@ -36,8 +36,13 @@ fn describe(scene: &Scene) -> Vec<String> {
     let settings = &scene.settings;
     let mut lines = vec![
         format!(
-            "picture: {} × {}, {} samples, {} photons, seed {}",
-            settings.width, settings.height, settings.samples, settings.photons, settings.seed
+            "picture: {} × {}, {} samples, {} photons, target error {}, seed {}",
+            settings.width,
+            settings.height,
+            settings.samples.map_or("open".to_owned(), |samples| samples.to_string()),
+            settings.photons.map_or("open".to_owned(), |photons| photons.to_string()),
+            settings.target_error,
+            settings.seed
         ),
         format!(
             "objects: {}, with {} triangles",

@@ -44,8 +44,7 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
 
     let mut session = Session::open(progress, loaded, times)?;
     let deadline = arguments.time_limit.and_then(|limit| start.checked_add(limit));
-    session.emit_photons(deadline)?;
-    session.add_samples(deadline)?;
+    session.refine(deadline)?;
 
     let write_start = Instant::now();
     let maps = write(&session, &mut outputs)?;
@@ -60,8 +59,9 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
 
 fn override_settings(scene: &mut Scene, arguments: &RenderArguments) {
     let settings = &mut scene.settings;
-    settings.photons = arguments.photons.unwrap_or(settings.photons);
-    settings.samples = arguments.samples.unwrap_or(settings.samples);
+    settings.photons = arguments.photons.or(settings.photons);
+    settings.samples = arguments.samples.or(settings.samples);
+    settings.target_error = arguments.target_error.unwrap_or(settings.target_error);
 }
 
 /// Says what is odd about the scene; layers that no file takes are left out.
@@ -109,6 +109,7 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
         counted: &session.renderer.statistics()?,
         times: session.times,
         time_limit_reached: session.time_limit_reached,
+        error: session.error,
     };
     Ok(write_statistics(path, &report.statistics())?)
 }

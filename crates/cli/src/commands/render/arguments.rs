@@ -3,7 +3,7 @@
 use std::{path::PathBuf, time::Duration};
 
 use crate::{
-    numbers::{parse_photons, parse_samples, parse_seconds},
+    numbers::{parse_photons, parse_samples, parse_seconds, parse_target_error},
     session::SessionArguments,
 };
 
@@ -39,6 +39,12 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = parse_samples)]
     pub samples: Option<u32>,
 
+    /// Error at which photons and samples are enough where their numbers are left open, such as 0.05 for 5 %
+    ///
+    /// In place of the scene's. The root of the mean squared error of pixels' radiance, relative to it.
+    #[arg(long, value_name = "ERROR", value_parser = parse_target_error)]
+    pub target_error: Option<f32>,
+
     /// Stop adding photons and samples after this time and write what there is
     ///
     /// Counted from the start of the program. Photons take at most half of what is left when they begin. There is always one batch
@@ -67,7 +73,7 @@ pub(super) mod tests {
     fn all_flags_are_read() {
         let read = parse(
             "a.toml --set render.width=8 --output a.exr --output a.png --stats s.json --energy-maps maps \
-             --photons 1_000_000 --samples 8 --seed 7 --time-limit 2.5 --floor --allow-outside --quiet"
+             --photons 1_000_000 --samples 8 --target-error 0.02 --seed 7 --time-limit 2.5 --floor --allow-outside --quiet"
                 .split_whitespace(),
         );
         let expected = RenderArguments {
@@ -86,6 +92,7 @@ pub(super) mod tests {
             energy_maps: Some("maps".into()),
             photons: Some(1_000_000),
             samples: Some(8),
+            target_error: Some(0.02),
             time_limit: Some(Duration::from_millis(2500)),
         };
         assert_eq!(read.unwrap(), expected);

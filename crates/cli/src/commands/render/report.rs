@@ -14,6 +14,7 @@ pub(crate) struct Report<'r> {
     pub counted: &'r Statistics,
     pub times: Times,
     pub time_limit_reached: bool,
+    pub error: Option<f64>,
 }
 
 impl Report<'_> {
@@ -83,7 +84,9 @@ impl Report<'_> {
         output::CameraRays {
             samples: counted.samples,
             rays: counted.camera_rays,
-            samples_per_second: rate(pixels * u64::from(counted.samples), time),
+            mean_samples: counted.mean_samples,
+            estimated_error: self.error,
+            samples_per_second: rate((pixels as f64 * counted.mean_samples) as u64, time),
             rays_per_second: rate(counted.camera_rays, time),
         }
     }
