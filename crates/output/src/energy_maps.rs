@@ -1,12 +1,8 @@
 //! Energy maps as OpenEXR.
 
-use std::{
-    collections::HashSet,
-    fs,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
-use crate::{Error, Picture, check_writable, open_exr::write_layers};
+use crate::{Error, Picture, object_folder::ObjectFolder, open_exr::write_layers};
 
 /// The irradiance that an object's energy map holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,10 +22,7 @@ pub struct Irradiance<'m> {
 /// back, for maps that have one. Line j of the file is row j of the map. Characters of an object's name that some file systems
 /// refuse are written as `_`; a name that is taken then gets a number.
 #[derive(Debug)]
-pub struct EnergyMapFolder {
-    path: PathBuf,
-    taken: HashSet<String>,
-}
+pub struct EnergyMapFolder(ObjectFolder);
 
 impl EnergyMapFolder {
     /// Opens a folder, creates it where it is missing, and checks that it takes files. Files in it stay until they are
@@ -38,9 +31,7 @@ impl EnergyMapFolder {
     /// # Errors
     /// If the folder cannot be created or written to.
     pub fn open(path: &Path) -> Result<Self, Error> {
-        fs::create_dir_all(path).map_err(|source| Error::Create { path: path.to_owned(), source })?;
-        check_writable(&path.join("map.exr"))?;
-        Ok(Self { path: path.to_owned(), taken: HashSet::new() })
+        ObjectFolder::open(path).map(Self)
     }
 
     /// Writes one object's map; returns its file.
@@ -48,8 +39,8 @@ impl EnergyMapFolder {
     /// # Errors
     /// If the texels are not as many as one or two layers of the map have, or the file cannot be written.
     pub fn write(&mut self, object: &str, map: &Irradiance<'_>) -> Result<PathBuf, Error> {
-        let file_name = self.file_name(object);
-        let path = self.path.join(file_name);
+        let stem = self.0.stem(object);
+        let path = self.0.path_of(&format!("{stem}.exr"));
         let layer = |pixels| Picture { width: map.width, height: map.height, pixels };
         let texels_in_layer = map.width as usize * map.height as usize;
         let (front, back) = map.texels.split_at(texels_in_layer.min(map.texels.len()));
@@ -59,19 +50,6 @@ impl EnergyMapFolder {
         }
         write_layers(&path, "irradiance, W/m^2", &layers)?;
         Ok(path)
-    }
-
-    /// A name that differs from all given before also where case does not count.
-    fn file_name(&mut self, object: &str) -> String {
-        let allowed = |c: char| if c.is_control() || r#"/\:*?"<>|"#.contains(c) { '_' } else { c };
-        let stem: String = object.chars().map(allowed).collect();
-        let mut candidate = stem.clone();
-        let mut number = 2;
-        while !self.taken.insert(candidate.to_lowercase()) {
-            candidate = format!("{stem} {number}");
-            number += 1;
-        }
-        candidate + ".exr"
     }
 }
 
@@ -97,13 +75,6 @@ mod tests {
         assert_eq!((values(2), values(5)), ((0..6u8).map(f32::from).collect(), (6..12u8).map(f32::from).collect()));
         assert!(maps.write("short", &Irradiance { width: 3, height: 2, texels: &texels[..5] }).is_err());
         assert!(maps.write("long", &Irradiance { width: 3, height: 2, texels: &texels[..9] }).is_err());
-    }
-
-    #[test]
-    fn names_fit_every_file_system() {
-        let mut maps = EnergyMapFolder { path: PathBuf::new(), taken: HashSet::new() };
-        let names = ["a:b", "a?b", "A_B", "ä ö.1"].map(|name| maps.file_name(name));
-        assert_eq!(names, ["a_b.exr", "a_b 2.exr", "A_B 3.exr", "ä ö.1.exr"]);
     }
 
     #[test]

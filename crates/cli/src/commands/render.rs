@@ -113,7 +113,8 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
     Ok(write_statistics(path, &report.statistics())?)
 }
 
-fn display(output: &OutputSettings) -> Display {
+/// How the scene's pictures are exposed.
+pub(crate) fn display(output: &OutputSettings) -> Display {
     let tone = match output.tone {
         ToneCurve::Plain => Tone::Plain,
         ToneCurve::Filmic => Tone::Filmic,
