@@ -91,7 +91,7 @@ fn caustics_hold_the_flux_that_photons_left() {
     let ledgers = renderer.statistics().unwrap().ledgers;
     let units: i64 = ledgers.iter().map(|ledger| ledger.deposited[1]).sum();
     let deposited = units as f64 / (energy_map.units_per_watt * energy_map.photons as f64);
-    assert!(deposited > 0.1, "{deposited} W");
+    assert!(deposited > 0.05, "{deposited} W");
     assert!((flux / deposited - 1.0).abs() < 1e-5, "{flux} W in the lightmap, {deposited} W deposited");
     for texel in 0..162 {
         let sum = (0..3)
@@ -116,12 +116,15 @@ fn light_reaches_the_ground_of_a_pool_as_fresnel_says() {
     let scene = black_floor(
         "background = 1",
         "[[objects]]
-         box = { min = [-2000, -1, -2000], max = [2000, 0.5, 2000] }
+         box = { min = [-2000, -1, -2000], max = [2000, 0.05, 2000] }
          material = \"water\"",
     );
     let map = lightmap(&mut emit(&scene, 0), 0, 256);
     let expected = PI * (1.0 - diffuse_reflectance(1.33));
-    let mean = (0..81).map(|texel| f64::from(map.irradiance(texel)[0])).sum::<f64>() / 81.0;
+    // At the border, light from below comes past the floor and is reflected back to it by the water's surface.
+    let inner: Vec<usize> =
+        (0..81).filter(|texel| (1..8).contains(&(texel % 9)) && (1..8).contains(&(texel / 9))).collect();
+    let mean = inner.iter().map(|texel| f64::from(map.irradiance(*texel)[0])).sum::<f64>() / inner.len() as f64;
     assert!((mean / expected - 1.0).abs() < 0.01, "{mean} W/m², expected {expected}");
     assert!((diffuse_reflectance(1.33) - 0.066).abs() < 0.001);
 }

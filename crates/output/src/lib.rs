@@ -18,6 +18,7 @@
 
 mod energy_maps;
 mod error;
+mod false_color;
 mod gltf;
 mod lightmaps;
 mod object_folder;

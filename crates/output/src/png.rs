@@ -33,6 +33,11 @@ pub fn write_png(path: &Path, picture: &Picture<'_>, display: &Display) -> Resul
     replace(path, |file| file.write_all(&bytes))
 }
 
+/// Writes bytes of red, green and blue as PNG.
+pub(crate) fn write_bytes(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<(), Error> {
+    replace(path, |file| PngEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb8))
+}
+
 /// The bytes of a PNG file: 8 bits a channel, sRGB, with an opacity from 0 to 1 for each pixel if it has holes. `path` is for messages.
 pub(crate) fn encode_png(
     path: &Path,
