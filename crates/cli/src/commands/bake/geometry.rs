@@ -100,6 +100,27 @@ impl<'s> Geometry<'s> {
     }
 }
 
+/// In diagonals of the object: how far a back lies behind its front, so that rays and depth buffers tell them apart.
+const BACK_BEHIND_FRONT: f32 = 1e-4;
+
+/// For each vertex of a mesh, world frame, by how much a back is moved off its front.
+fn steps_back(object: &Object) -> Vec<Vec3> {
+    let mesh = &object.mesh;
+    let place = |vertex: u32| object.world_from_object.transform_point3(mesh.positions[vertex as usize]);
+    let (low, high) = (0..mesh.positions.len() as u32)
+        .map(place)
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let mirrored = object.world_from_object.matrix3.determinant() < 0.0;
+    let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
+    for vertices in &mesh.triangles {
+        let [a, b, c] = vertices.map(place);
+        let facet = (b - a).cross(c - a) * if mirrored { -1.0 } else { 1.0 };
+        vertices.iter().for_each(|vertex| normals[*vertex as usize] += facet);
+    }
+    let step = BACK_BEHIND_FRONT * low.distance(high);
+    normals.into_iter().map(|normal| -step * normal.normalize_or_zero()).collect()
+}
+
 /// Some of an object's triangles in the world frame, seen from their front or their back, with their places on a map.
 fn part(object: &Object, triangles: &[usize], layout: Option<&MapLayout>, is_back: bool, material: usize) -> GltfPart {
     let mesh = &object.mesh;
@@ -107,6 +128,7 @@ fn part(object: &Object, triangles: &[usize], layout: Option<&MapLayout>, is_bac
     // A mirrored placement turns the triangles, not the normals.
     let turns = (linear.determinant() < 0.0) != is_back;
     let normal_matrix = linear.inverse().transpose() * if is_back { -1.0 } else { 1.0 };
+    let offsets = if is_back { steps_back(object) } else { Vec::new() };
     let mut part = GltfPart { material, ..GltfPart::default() };
     let (mut own_uvs, mut map_uvs) = (Vec::new(), Vec::new());
     let mut known: HashMap<(u32, [u32; 2]), u32> = HashMap::new();
@@ -116,7 +138,8 @@ fn part(object: &Object, triangles: &[usize], layout: Option<&MapLayout>, is_bac
             let place = layout.map_or(Vec2::ZERO, |layout| uv_on(layout, layout.corners[triangle][corner]));
             *known.entry((vertex, place.to_array().map(f32::to_bits))).or_insert_with(|| {
                 let position = object.world_from_object.transform_point3(mesh.positions[vertex as usize]);
-                part.positions.push(position.to_array());
+                let offset = offsets.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
+                part.positions.push((position + offset).to_array());
                 let normal = mesh.normals.get(vertex as usize).map(|n| (normal_matrix * *n).normalize_or(Vec3::Y));
                 part.normals.extend(normal.map(|normal| normal.to_array()));
                 // A picture's upper left corner is (0, 0) in glTF, its lower left one in meshes here.
