@@ -3,9 +3,9 @@
 
 import package::bsdf::specular::outer_interface;
 import package::geometry::traverse::Hit;
-import package::layout::bake_pass::{bake_media, bake_params, bake_texels, cell_starts, cell_triangles, BakeTexel};
+import package::layout::bake_pass::{bake_params, bake_texels, cells, BakeTexel};
 import package::layout::path_pass::{film, path_params, Sighting, LAYER_EMISSION};
-import package::layout::records::{load_corners, load_object, load_triangle, record_texel};
+import package::layout::records::{load_corners, load_triangle};
 import package::layout::scene::{Material, Triangle, MATERIAL_DIFFUSE, MATERIAL_RECEIVER, NONE};
 import package::medium::media::medium_ior;
 import package::path::advance::{follow, interact};
@@ -23,19 +23,6 @@ const PLACES: u32 = 16u;
 /// How far outside a triangle, in its barycentric coordinates, a place counts as within it.
 const SLACK: f32 = 1e-5;
 
-fn load_bake_texel(index: u32) -> BakeTexel {
-    let texel = textureLoad(bake_texels, record_texel(index), 0);
-    return BakeTexel(texel.x, texel.y, texel.z, texel.w);
-}
-
-fn load_cell_start(cell: u32) -> u32 {
-    return textureLoad(cell_starts, record_texel(cell >> 2u), 0)[cell & 3u];
-}
-
-fn load_cell_triangle(entry: u32) -> u32 {
-    return textureLoad(cell_triangles, record_texel(entry >> 2u), 0)[entry & 3u];
-}
-
 /// A number from −1 to 1 whose density falls evenly from its middle, as a texel's weight does.
 fn tent(u: f32) -> f32 {
     let v = 2.0 * u;
@@ -50,13 +37,13 @@ struct Place {
 }
 
 /// The point of the surface that lies at a place of the map; no triangle where there is none.
-fn surface_at_place(at: vec2<f32>, map_width: u32, map_height: u32) -> Place {
-    let last = vec2<f32>(f32(map_width - 2u), f32(map_height - 2u));
+fn surface_at_place(at: vec2<f32>) -> Place {
+    let last = vec2<f32>(f32(bake_params.width - 2u), f32(bake_params.height - 2u));
     let cell_at = vec2<u32>(clamp(floor(at), vec2<f32>(0.0), last));
-    let cell = cell_at.y * (map_width - 1u) + cell_at.x;
-    let end = load_cell_start(cell + 1u);
-    for (var entry = load_cell_start(cell); entry < end; entry++) {
-        let index = load_cell_triangle(entry);
+    let cell = cell_at.y * (bake_params.width - 1u) + cell_at.x;
+    let end = cells[cell + 1u];
+    for (var entry = cells[cell]; entry < end; entry++) {
+        let index = cells[entry];
         let c = load_corners(index);
         let along_1 = c.texel_01.zw - c.texel_01.xy;
         let along_2 = vec2<f32>(c.texel_x_2, c.texel_y_2) - c.texel_01.xy;
@@ -76,15 +63,14 @@ fn surface_at_place(at: vec2<f32>, map_width: u32, map_height: u32) -> Place {
 /// A point of the surface behind a texel, drawn with the texel's weight, and what it counts for: where texels lie less densely, more of
 /// the surface is behind them. No triangle where none was found.
 fn draw_place(texel: BakeTexel, first: vec2<f32>, seed: u32) -> Place {
-    let object = load_object(bake_params.object);
     let middle = vec2<f32>(f32(texel.column), f32(texel.row));
-    let last = vec2<f32>(f32(object.map_width - 1u), f32(object.map_height - 1u));
+    let last = vec2<f32>(f32(bake_params.width - 1u), f32(bake_params.height - 1u));
     var u = first;
     var place = Place(Hit(NONE, 0.0, vec2<f32>(0.0)), 0.0);
     for (var attempt = 0u; attempt < PLACES; attempt++) {
         let at = middle + vec2<f32>(tent(u.x), tent(u.y));
         if all(at >= vec2<f32>(0.0)) && all(at <= last) {
-            place = surface_at_place(at, object.map_width, object.map_height);
+            place = surface_at_place(at);
             if place.hit.triangle != NONE {
                 break;
             }
@@ -115,7 +101,7 @@ fn sample_texels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     if index >= bake_params.texel_count {
         return;
     }
-    let texel = load_bake_texel(bake_params.first_texel + index);
+    let texel = bake_texels[index];
     let seed = combine(path_params.seed, bake_params.first_texel + index);
     let numbers = sobol_5(path_params.sample_index, seed);
     let place = draw_place(texel, numbers.first.xy, seed);
@@ -124,7 +110,7 @@ fn sample_texels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     }
     let weight = bake_params.texel_density / place.texel_density;
     var path: Path;
-    path.media = textureLoad(bake_media, record_texel(texel.media), 0);
+    path.media = texel.media;
     path.wavelength = first_wavelength();
     path.fifth_number = numbers.fifth;
     path.seed = seed;

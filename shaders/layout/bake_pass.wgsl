@@ -1,4 +1,4 @@
-// Binding 1 of group 1, and group 3 of the bake pass; the others are in path_pass.wgsl.
+// Binding 1 of group 1 and bind group 3 of the bake pass; the others are in path_pass.wgsl.
 
 /// Which texels of a lightmap a dispatch samples.
 struct BakeParams {
@@ -10,6 +10,10 @@ struct BakeParams {
     texel_count: u32,
     /// Workgroups along x.
     groups_x: u32,
+    /// Texels of the lightmap along x.
+    width: u32,
+    /// Texels of the lightmap along y.
+    height: u32,
     /// Texels over the area of their surface, 1/m², on average over the map.
     texel_density: f32,
 }
@@ -22,16 +26,15 @@ struct BakeTexel {
     row: u32,
     /// 0 on the front, 1 on the back.
     side: u32,
-    /// Index of the list of media in front of it.
-    media: u32,
+    /// Unused.
+    padding: u32,
+    /// The media in front of it, as keys.
+    media: vec4<u32>,
 }
 
 @group(1) @binding(1) var<uniform> bake_params: BakeParams;
-/// BakeTexel records.
-@group(3) @binding(0) var bake_texels: texture_2d<u32>;
-/// For each cell between four texels, row by row, and then once more: the place of its first triangle in `cell_triangles`, four a texel.
-@group(3) @binding(1) var cell_starts: texture_2d<u32>;
-/// Indices of the triangles that cross each cell, four a texel.
-@group(3) @binding(2) var cell_triangles: texture_2d<u32>;
-/// Lists of media.
-@group(3) @binding(3) var bake_media: texture_2d<u32>;
+/// The texels that the dispatch samples.
+@group(3) @binding(0) var<storage, read> bake_texels: array<BakeTexel>;
+/// For each cell between four texels, row by row, and then once more: where the triangles that cross it begin; from there on, these
+/// triangles' indices.
+@group(3) @binding(1) var<storage, read> cells: array<u32>;

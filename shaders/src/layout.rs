@@ -362,6 +362,10 @@ shared_structs! {
         texel_count: u32,
         /// Workgroups along x.
         groups_x: u32,
+        /// Texels of the lightmap along x.
+        width: u32,
+        /// Texels of the lightmap along y.
+        height: u32,
         /// Texels over the area of their surface, 1/m², on average over the map.
         texel_density: f32,
     }
@@ -373,8 +377,10 @@ shared_structs! {
         row: u32,
         /// 0 on the front, 1 on the back.
         side: u32,
-        /// Index of the list of media in front of it.
-        media: u32,
+        /// Unused.
+        padding: u32,
+        /// The media in front of it, as keys.
+        media: [u32; 4],
     }
     /// What a path saw of the energy maps.
     struct Sighting {

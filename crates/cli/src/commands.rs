@@ -1,4 +1,5 @@
 //! The commands, each with its arguments beside it.
 
+pub mod bake;
 pub mod inspect;
 pub mod render;

@@ -1,13 +1,14 @@
 //! Lightmaps: samples of every texel.
 
 mod lightmap;
+mod reflectance;
 mod table;
 
 pub use lightmap::{Lightmap, SurfacePlace};
+pub use reflectance::base_reflectance;
 
 use std::f32::consts::PI;
 
-use bytemuck::Pod;
 use diacaustic_scene::{Layer, Scene};
 use diacaustic_shaders::{BAKE, BakeParams, PathParams, Sighting, WORKGROUP_SIZE, light_layer};
 use diacaustic_surface::MapLayout;
@@ -26,12 +27,11 @@ use crate::{
 
 /// The bindings of `shaders/layout/path_pass.wgsl` and `bake_pass.wgsl`.
 const PARAMS: [Binding; 2] = [Binding::Uniform; 2];
-const TABLES: [Binding; 4] = [Binding::Records; 4];
+const TABLES: [Binding; 2] = [Binding::Read; 2];
 const FILM: Purpose = Purpose { what: "the lightmap's texels", remedy: "lower map_size" };
 const SIGHTINGS: Purpose = Purpose { what: "what paths see of the energy maps", remedy: "lower map_size" };
 const TEXELS: Purpose = Purpose { what: "the list of a lightmap's texels", remedy: "lower map_size" };
 const CELLS: Purpose = Purpose { what: "where triangles lie on a lightmap", remedy: "lower map_size" };
-const MEDIA: Purpose = Purpose { what: "the media before a lightmap's texels", remedy: "use fewer dielectrics" };
 /// The stream of this pass's seeds.
 const SEED_STREAM: u32 = 5;
 /// Texels that are sampled at once.
@@ -93,7 +93,7 @@ pub(crate) fn bake(
     options: BakeOptions,
 ) -> Result<Lightmap, Error> {
     let table = Table::new(of.scene, object, layout, of.origins);
-    let sums = sample(gpu, pass, of, object, &table, options)?;
+    let sums = sample(gpu, pass, of, (object, layout), &table, options)?;
     let mut lightmap = Lightmap::new(layout, table.places);
     let texels_in_layer = layout.width as usize * layout.height as usize;
     let mut is_sampled = vec![false; lightmap.direct.len()];
@@ -129,19 +129,11 @@ fn sample(
     gpu: &Gpu,
     pass: &mut BakePass,
     of: &BakeScene<'_>,
-    object: usize,
+    (object, layout): (usize, &MapLayout),
     table: &Table,
     options: BakeOptions,
 ) -> Result<Vec<TexelSums>, Error> {
-    let textures = [
-        gpu.records(TEXELS, &table.texels)?,
-        gpu.records(CELLS, &by_four(&table.cell_starts))?,
-        gpu.records(CELLS, &by_four(&table.cell_triangles))?,
-        gpu.records(MEDIA, &table.media)?,
-    ];
-    let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-    let tables =
-        gpu.bind_resources(&pass.tables_layout, views.iter().map(wgpu::BindingResource::TextureView).collect());
+    let cells = gpu.filled(CELLS, &table.cells)?;
     let paths = PathParams {
         position: [0.0; 3],
         forward: [0.0; 3],
@@ -152,19 +144,20 @@ fn sample(
     };
     let pipeline = pass.pipelines.get(gpu, of.features.for_baking());
     let mut sums = Vec::with_capacity(table.texels.len());
-    let mut first = 0;
-    while first < table.texels.len() {
-        let count = (table.texels.len() - first).min(MOST_TEXELS);
-        let groups = (count as u32).div_ceil(WORKGROUP_SIZE);
+    for (number, texels) in table.texels.chunks(MOST_TEXELS).enumerate() {
+        let groups = (texels.len() as u32).div_ceil(WORKGROUP_SIZE);
         let groups_x = groups.min(65_535);
         let batch = BakeParams {
             object: object as u32,
-            first_texel: first as u32,
-            texel_count: count as u32,
+            first_texel: (number * MOST_TEXELS) as u32,
+            texel_count: texels.len() as u32,
             groups_x,
+            width: layout.width,
+            height: layout.height,
             texel_density: table.texel_density,
         };
-        let outputs = Outputs::new(gpu, pass, of, count as u64)?;
+        let tables = gpu.bind(&pass.tables_layout, &[&gpu.filled(TEXELS, texels)?, &cells]);
+        let outputs = Outputs::new(gpu, pass, of, texels.len() as u64)?;
         let (path_buffer, batch_buffer) = (gpu.uniform::<PathParams>("bake paths"), gpu.uniform::<BakeParams>("bake"));
         gpu.queue.write_buffer(&batch_buffer, 0, bytemuck::bytes_of(&batch));
         let params = gpu.bind(&pass.params_layout, &[&path_buffer, &batch_buffer]);
@@ -177,8 +170,7 @@ fn sample(
                 gpu.wait()?;
             }
         }
-        sums.extend(outputs.read(gpu, count as u64)?);
-        first += count;
+        sums.extend(outputs.read(gpu, texels.len() as u64)?);
     }
     Ok(sums)
 }
@@ -216,10 +208,4 @@ impl Outputs {
         };
         Ok(totals.iter().zip(of_texel).map(sums).collect())
     }
-}
-
-/// Numbers in records of four, filled up with zeros.
-fn by_four<T: Pod>(numbers: &[T]) -> Vec<[T; 4]> {
-    let record = |chunk: &[T]| std::array::from_fn(|place| chunk.get(place).copied().unwrap_or_else(T::zeroed));
-    numbers.chunks(4).map(record).collect()
 }

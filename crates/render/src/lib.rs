@@ -51,7 +51,7 @@ mod statistics;
 mod texture_records;
 
 pub use aim::Emission;
-pub use bake::{BakeOptions, Lightmap, SurfacePlace};
+pub use bake::{BakeOptions, Lightmap, SurfacePlace, base_reflectance};
 pub use display_pass::RenderParams;
 pub use energy_map::EnergyMap;
 pub use error::Error;

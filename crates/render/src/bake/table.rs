@@ -1,7 +1,5 @@
 //! Where the surface behind each texel of a lightmap is.
 
-use std::collections::HashMap;
-
 use diacaustic_scene::Scene;
 use diacaustic_shaders::BakeTexel;
 use diacaustic_surface::{DielectricBoundaries, MapLayout, RAY_OFFSET};
@@ -14,12 +12,9 @@ use crate::lights::keys_of_media;
 pub(crate) struct Table {
     /// The texels that hold surface, layer by layer and row by row.
     pub texels: Vec<BakeTexel>,
-    /// Lists of media.
-    pub media: Vec<[u32; 4]>,
-    /// For each cell between four texels, row by row, and then once more: the place of its first triangle.
-    pub cell_starts: Vec<u32>,
-    /// The triangles that cross each cell, by their place on the device.
-    pub cell_triangles: Vec<u32>,
+    /// For each cell between four texels, row by row, and then once more: where the triangles that cross it begin; from there on, these
+    /// triangles' places on the device.
+    pub cells: Vec<u32>,
     /// Texels over the area of their surface, 1/m².
     pub texel_density: f32,
     /// For each texel of one layer, the point of the surface nearest to its middle.
@@ -40,36 +35,25 @@ impl Table {
     pub fn new(scene: &Scene, object: usize, layout: &MapLayout, origins: &[(u32, u32)]) -> Self {
         let triangles = map_triangles(scene, object, layout, origins);
         let places = nearest_places(layout, &triangles);
-        let (cell_starts, cell_triangles) = cells(layout, &triangles);
-        let mut table = Self {
-            texels: Vec::new(),
-            media: Vec::new(),
-            cell_starts,
-            cell_triangles,
+        Self {
+            texels: texels(scene, object, layout, &places),
+            cells: cells(layout, &triangles),
             texel_density: texel_density(scene, object, &triangles),
             places,
-        };
-        table.list_texels(scene, object, layout);
-        table
-    }
-
-    fn list_texels(&mut self, scene: &Scene, object: usize, layout: &MapLayout) {
-        let boundaries = DielectricBoundaries::new(scene);
-        let mut known = HashMap::new();
-        for side in 0..layout.layers {
-            for (texel, place) in self.places.iter().enumerate() {
-                let Some(place) = place else { continue };
-                let point = point_before(scene, object, *place, side == 0);
-                let media = keys_of_media(scene, boundaries.media_at(point));
-                let media = *known.entry(media).or_insert_with(|| {
-                    self.media.push(media);
-                    self.media.len() as u32 - 1
-                });
-                let (column, row) = (texel as u32 % layout.width, texel as u32 / layout.width);
-                self.texels.push(BakeTexel { column, row, side, media });
-            }
         }
     }
+}
+
+/// The texels that hold surface, with what lies in front of them.
+fn texels(scene: &Scene, object: usize, layout: &MapLayout, places: &[Option<SurfacePlace>]) -> Vec<BakeTexel> {
+    let boundaries = DielectricBoundaries::new(scene);
+    let texel = |side: u32, index: usize, place: SurfacePlace| {
+        let media = boundaries.media_at(point_before(scene, object, place, side == 0));
+        let (column, row) = (index as u32 % layout.width, index as u32 / layout.width);
+        BakeTexel { column, row, side, padding: 0, media: keys_of_media(scene, media) }
+    };
+    let of_side = |side| places.iter().enumerate().filter_map(move |(index, place)| Some((side, index, (*place)?)));
+    (0..layout.layers).flat_map(of_side).map(|(side, index, place)| texel(side, index, place)).collect()
 }
 
 /// The triangles of an object's receivers that cover some of the map.
@@ -169,8 +153,8 @@ fn nearest_point(corners: &[Vec2; 3], p: Vec2) -> ([f32; 3], Vec2) {
     edges.into_iter().min_by(|x, y| x.1.distance_squared(p).total_cmp(&y.1.distance_squared(p))).unwrap_or(edges[0])
 }
 
-/// The triangles that cross each cell: where each cell's begin, and then all of them, by their place on the device.
-fn cells(layout: &MapLayout, triangles: &[MapTriangle]) -> (Vec<u32>, Vec<u32>) {
+/// For each cell, and then once more, where the triangles that cross it begin; then these triangles, by their place on the device.
+fn cells(layout: &MapLayout, triangles: &[MapTriangle]) -> Vec<u32> {
     let width = layout.width - 1;
     let mut entries = Vec::new();
     for t in triangles {
@@ -184,15 +168,17 @@ fn cells(layout: &MapLayout, triangles: &[MapTriangle]) -> (Vec<u32>, Vec<u32>) 
         }
     }
     entries.sort_unstable();
-    let cell_count = width * (layout.height - 1);
-    let mut starts = vec![0u32; cell_count as usize + 1];
+    let count = (width * (layout.height - 1)) as usize;
+    let mut cells = vec![0; count + 1];
     for (cell, _) in &entries {
-        starts[*cell as usize + 1] += 1;
+        cells[*cell as usize + 1] += 1;
     }
-    for cell in 1..starts.len() {
-        starts[cell] += starts[cell - 1];
+    cells[0] = count as u32 + 1;
+    for cell in 0..count {
+        cells[cell + 1] += cells[cell];
     }
-    (starts, entries.into_iter().map(|(_, index)| index).collect())
+    cells.extend(entries.into_iter().map(|(_, index)| index));
+    cells
 }
 
 /// Whether a triangle may have points in the cell with lower corner `low`; no line along one of its edges or the cell's parts them.
@@ -224,15 +210,15 @@ mod tests {
         let layout = layout();
         let corners = layout.corners[0];
         for corners in [corners, [corners[0], corners[2], corners[1]]] {
-            let (starts, list) = cells(&layout, &[MapTriangle { index: 7, triangle: 0, corners }]);
-            assert_eq!((starts.len(), starts.last().copied()), (7 * 5 + 1, Some(list.len() as u32)));
-            assert!(list.iter().all(|index| *index == 7) && list.len() < 35, "{list:?}");
+            let cells = cells(&layout, &[MapTriangle { index: 7, triangle: 0, corners }]);
+            assert_eq!((cells[0], cells[35] as usize), (36, cells.len()));
+            assert!(cells[36..].iter().all(|index| *index == 7) && cells.len() < 36 + 30, "{cells:?}");
             for step in 0..400u32 {
                 let [u, v] = [0.618_034, 0.754_878].map(|factor| (f64::from(step) * factor).fract() as f32);
                 let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
                 let point = corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]);
                 let cell = (point.y as usize) * 7 + point.x as usize;
-                assert!(starts[cell] < starts[cell + 1], "{point}");
+                assert!(cells[cell] < cells[cell + 1], "{point}");
             }
         }
     }
