@@ -40,6 +40,8 @@ pub struct MapLayout {
     pub charts: Vec<u32>,
     /// Charts.
     pub chart_count: u32,
+    /// The last so many charts are cells, in which pieces too small for a chart of their own lie on one another.
+    pub cell_count: u32,
     /// Width of a texel on the surface in the world, metres; the mean over the surface where charts are not metric.
     pub metres_per_texel: f32,
 }
@@ -84,13 +86,15 @@ impl MapLayout {
         let last = Vec2::new((width - 1) as f32, (height - 1) as f32);
         let place = |v: u32| ((places[v as usize] - low) / extent * last).clamp(Vec2::ZERO, last);
         let corners = mesh.triangles.iter().map(|vertices| vertices.map(place)).collect();
+        let (charts, chart_count) = islands(mesh);
         Self {
             width,
             height,
             layers: if mesh.open_edges() == 0 { 1 } else { 2 },
             corners,
-            charts: vec![0; mesh.triangles.len()],
-            chart_count: 1,
+            charts,
+            chart_count,
+            cell_count: 0,
             metres_per_texel: metres_per_unit(object, place) as f32,
         }
     }
@@ -103,6 +107,7 @@ impl MapLayout {
             corners: placed.corners,
             charts: atlas.chart_of.clone(),
             chart_count: atlas.frames.len() as u32,
+            cell_count: atlas.cells as u32,
             metres_per_texel: (placed.texel * facets.metres) as f32,
         }
     }
@@ -120,6 +125,36 @@ fn given_places(mesh: &Mesh) -> Option<&[Vec2]> {
         Chart::Uvs => Some(mesh.map_places()),
         Chart::Automatic => None,
     }
+}
+
+/// For each triangle the number of the set of triangles with vertices in common that it belongs to, and how many there are.
+fn islands(mesh: &Mesh) -> (Vec<u32>, u32) {
+    fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+        while parents[vertex as usize] != vertex {
+            parents[vertex as usize] = parents[parents[vertex as usize] as usize];
+            vertex = parents[vertex as usize];
+        }
+        vertex
+    }
+    let mut parents: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    for [a, b, c] in &mesh.triangles {
+        for (one, other) in [(a, b), (b, c)] {
+            let (one, other) = (root(&mut parents, *one), root(&mut parents, *other));
+            parents[one.max(other) as usize] = one.min(other);
+        }
+    }
+    let mut numbers = vec![u32::MAX; mesh.positions.len()];
+    let mut count = 0;
+    let mut number = |[vertex, ..]: &[u32; 3]| {
+        let number = &mut numbers[root(&mut parents, *vertex) as usize];
+        if *number == u32::MAX {
+            *number = count;
+            count += 1;
+        }
+        *number
+    };
+    let charts = mesh.triangles.iter().map(&mut number).collect();
+    (charts, count)
 }
 
 fn bounds(places: &[Vec2]) -> (Vec2, Vec2) {

@@ -6,21 +6,19 @@ use rayon::prelude::*;
 use super::{
     cells::share_cells,
     facets::Facets,
-    flattening::Frame,
+    flattening::{Frame, MARGIN},
     growing::grow_charts,
     packing::{Packing, pack},
     patches::Patches,
 };
-
-/// Texels between a chart and the middle of the outermost texels that it has to itself: what single precision may move a place on a
-/// map of 10⁵ texels along a side.
-const MARGIN: f64 = 1.0 / 16.0;
 
 /// A surface's charts.
 pub(super) struct Atlas {
     /// The chart of each triangle.
     pub chart_of: Vec<u32>,
     pub frames: Vec<Frame>,
+    /// How many of the last are cells.
+    pub cells: usize,
 }
 
 /// Charts at their places.
@@ -46,14 +44,18 @@ impl Atlas {
             Frame::tight(axis, members.iter().flat_map(|&triangle| facets.corners(triangle)))
         };
         let frames: Vec<Frame> = used.par_iter().map(|chart| chart.axis).zip(&members).map(frame).collect();
-        let charts = share_cells(facets, frames, members, texel);
+        let (charts, cells) = share_cells(facets, frames, members, texel);
         let mut chart_of = vec![0; facets.mesh.triangles.len()];
         let mut frames = Vec::with_capacity(charts.len());
         for (number, (frame, members)) in charts.into_iter().enumerate() {
             frames.push(frame);
             members.into_iter().for_each(|triangle| chart_of[triangle as usize] = number as u32);
         }
-        Self { chart_of, frames }
+        if frames.is_empty() {
+            // Triangles without area lie on one point.
+            frames.push(Frame::default());
+        }
+        Self { chart_of, frames, cells }
     }
 
     /// Packs the charts at a texel of given width into a rectangle that is about a square.
@@ -103,8 +105,7 @@ impl Atlas {
 
     /// The texels that each chart takes.
     fn sizes(&self, texel: f64) -> Vec<UVec2> {
-        let texels = |size: DVec2| (size / texel + 2.0 * MARGIN).ceil() + 1.0;
-        self.frames.iter().map(|frame| texels(frame.size).as_uvec2()).collect()
+        self.frames.iter().map(|frame| frame.texels(texel).as_uvec2()).collect()
     }
 
     fn put(&self, facets: &Facets<'_>, texel: f64, sizes: &[UVec2], packing: &Packing) -> Placed {

@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use super::{facets::Facets, flattening::Frame};
+use super::{
+    facets::Facets,
+    flattening::{Frame, MARGIN},
+};
 
 /// Texels for each texel of area that charts may take before the most wasteful share cells.
 const MOST_TEXELS: f64 = 4.0;
@@ -17,16 +20,16 @@ const CELL_AREA: f64 = 4.0;
 pub(super) type FlatChart = (Frame, Vec<u32>);
 
 /// Keeps charts whose texels are few for their area; the others' triangles share cells of one texel's width, each with what is near
-/// and faces the same of six ways.
+/// and faces the same of six ways. Returns the charts, and how many cells there are at their end.
 pub(super) fn share_cells(
     facets: &Facets<'_>,
     frames: Vec<Frame>,
     members: Vec<Vec<u32>>,
     texel: f64,
-) -> Vec<FlatChart> {
+) -> (Vec<FlatChart>, usize) {
     let areas: Vec<f64> =
         members.iter().map(|own| own.iter().map(|&t| facets.area(t)).sum::<f64>() / (texel * texel)).collect();
-    let costs: Vec<f64> = frames.iter().map(|frame| ((frame.size / texel).ceil() + 1.0).element_product()).collect();
+    let costs: Vec<f64> = frames.iter().map(|frame| frame.texels(texel).element_product()).collect();
     let shares = wasteful(&areas, &costs);
     let mut charts = Vec::new();
     let mut sharing: BTreeMap<usize, Vec<Sharer>> = BTreeMap::new();
@@ -42,12 +45,13 @@ pub(super) fn share_cells(
             charts.push((frame, own));
         }
     }
+    let kept = charts.len();
     for (way, mut sharers) in sharing {
         sharers.sort_by_key(|sharer| sharer.place);
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
         let (u, v) = (axes[(way / 2 + 1) % 3], axes[(way / 2 + 2) % 3]);
         let (mut cell, mut area) = (Vec::new(), 0.0);
-        let frame = |cell: &[u32]| Frame::shrunk(u, v, cell.iter().flat_map(|&t| facets.corners(t)), texel);
+        let frame = |cell: &[u32]| Frame::shrunk(u, v, cell.iter().flat_map(|&t| facets.corners(t)), (1.0 - 2.0 * MARGIN) * texel);
         for sharer in sharers {
             cell.extend(sharer.triangles);
             area += sharer.area;
@@ -60,7 +64,8 @@ pub(super) fn share_cells(
             charts.push((frame(&cell), cell));
         }
     }
-    charts
+    let cells = charts.len() - kept;
+    (charts, cells)
 }
 
 /// A chart that shares a cell.

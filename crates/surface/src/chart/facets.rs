@@ -18,8 +18,8 @@ pub(super) struct Facets<'a> {
     pub rounding: f64,
     /// Twice each triangle's area times its unit normal, units².
     pub double_areas: Vec<Vec3>,
-    /// For each triangle the one beyond each edge, of which edge k leads from corner k to corner k + 1; [`NONE`] where an edge has not
-    /// exactly two triangles.
+    /// For each triangle the one beyond each edge, of which edge k leads from corner k to corner k + 1; [`NONE`] where an edge is not
+    /// passed exactly once in each direction.
     pub neighbours: Vec<[u32; 3]>,
     /// Whether every edge is passed equally often in both directions.
     pub is_closed: bool,
@@ -117,7 +117,9 @@ fn join_edges(mesh: &Mesh, welded: &[u32]) -> (Vec<[u32; 3]>, bool) {
         of_vertex.sort_unstable_by_key(|passage| (passage.to, passage.slot));
         for of_edge in of_vertex.chunk_by(|a, b| a.to == b.to) {
             is_closed &= 2 * of_edge.iter().filter(|passage| passage.upwards).count() == of_edge.len();
-            if let [one, other] = of_edge {
+            if let [one, other] = of_edge
+                && one.upwards != other.upwards
+            {
                 neighbours[one.slot as usize / 3][one.slot as usize % 3] = other.slot / 3;
                 neighbours[other.slot as usize / 3][other.slot as usize % 3] = one.slot / 3;
             }

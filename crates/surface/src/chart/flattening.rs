@@ -2,6 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
+/// Texels between a chart and the middle of the outermost texels that it has to itself: what single precision may move a place on a
+/// map of 10⁵ texels along a side.
+pub(super) const MARGIN: f64 = 1.0 / 16.0;
+
 /// How a chart's plane lies in the surface's space.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Frame {
@@ -59,6 +63,11 @@ impl Frame {
         let size = flat.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p)) - low;
         let shrink = (longest / size.max_element().max(f64::MIN_POSITIVE)).min(1.0);
         Self { u, v, low, size: size * shrink, shrink }
+    }
+
+    /// The texels of a width that the rectangle takes along its sides.
+    pub(super) fn texels(&self, texel: f64) -> DVec2 {
+        (self.size / texel + 2.0 * MARGIN).ceil() + 1.0
     }
 
     /// The place of a point in the rectangle, units from its lower corner.
