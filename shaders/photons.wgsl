@@ -131,9 +131,13 @@ fn kernel_weight(ellipse: Ellipse, place: vec2<u32>) -> f32 {
     return max(1.0 - dot(w * w, ellipse.inverse), 0.0);
 }
 
-/// Lays flux over the ellipse of the photon's footprint; returns false if it is too small.
+/// Lays flux over the ellipse of the photon's footprint; returns false if it is too small, or the map is of several charts, onto others of
+/// which it might reach.
 fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, front: bool) -> bool {
     let c = load_corners(hit.triangle);
+    if c.charts > 1u {
+        return false;
+    }
     let object = load_object(triangle.object);
     let b = hit.barycentric;
     let at = (1.0 - b.x - b.y) * c.texel_01.xy + b.x * c.texel_01.zw + b.y * vec2<f32>(c.texel_x_2, c.texel_y_2);

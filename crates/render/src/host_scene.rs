@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_surface::{
-    BoundingSphere, Bvh, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
+    BoundingSphere, Bvh, caster_bounds, check_map_uvs, light_surfaces, scene_bounds, separate_touching, world_triangles,
 };
 
 use crate::{
@@ -45,6 +45,7 @@ impl HostScene {
         let bvh_time = start.elapsed();
 
         let start = Instant::now();
+        check_map_uvs(scene)?;
         // Each light group has maps of its own.
         let map_budget = map_budget / kept_groups(scene).names.len() as u64;
         let placements = place_maps(scene, &triangles[..of_objects], map_budget);

@@ -78,7 +78,10 @@ impl MapLayout {
     /// A map on which the vertices of a mesh have given places, with a texel for each `spacing` of the places' extent.
     fn of_places(object: &Object, places: &[Vec2], spacing: impl Fn(Vec2) -> f32) -> Self {
         let mesh = &object.mesh;
-        let (low, high) = bounds(places);
+        let (low, high) = match mesh.chart {
+            Chart::Uvs => unit_square_or_more(bounds(places)),
+            _ => bounds(places),
+        };
         let extent = (high - low).max(Vec2::splat(f32::MIN_POSITIVE));
         let spacing = spacing(extent).max(f32::MIN_POSITIVE);
         let width = ((extent.x / spacing).round() as u32).saturating_add(1).max(2);
@@ -159,6 +162,12 @@ fn islands(mesh: &Mesh) -> (Vec<u32>, u32) {
 
 fn bounds(places: &[Vec2]) -> (Vec2, Vec2) {
     places.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+}
+
+/// The unit square if it holds what lies between two corners, for a lightmap fills it; else the two corners.
+fn unit_square_or_more((low, high): (Vec2, Vec2)) -> (Vec2, Vec2) {
+    let is_within = low.cmpge(Vec2::ZERO).all() && high.cmple(Vec2::ONE).all();
+    if is_within { (Vec2::ZERO, Vec2::ONE) } else { (low, high) }
 }
 
 /// The width in the world of a unit of a plane, metres, by the areas of all triangles.
