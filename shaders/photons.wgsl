@@ -158,9 +158,13 @@ fn add_to_texel(texel: u32, units: vec3<i32>) {
     }
 }
 
-/// Lays flux over the ellipse of the photon's footprint, as far as it lies on the tile; returns false if it is too small.
+/// Lays flux over the ellipse of the photon's footprint, as far as it lies on the tile; returns false if it is too small, or the map is of several
+/// charts, onto others of which it might reach.
 fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, front: bool) -> bool {
     let c = load_corners(hit.triangle);
+    if c.charts > 1u {
+        return false;
+    }
     let place = tile_at(map_layer(triangle.object, front), map_place(hit));
     let cells = vec2<f32>(place.cells);
     let along_1 = place.scale * (c.texel_01.zw - c.texel_01.xy);

@@ -38,9 +38,11 @@ fn load_corners(index: u32) -> TriangleCorners {
     let first = 4u * index;
     let texel_0 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first), 0));
     let texel_1 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 1u), 0));
-    let texel_2 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 2u), 0));
+    let texel_2 = textureLoad(corners, record_texel(first + 2u), 0);
     let texel_3 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 3u), 0));
-    return TriangleCorners(texel_0.xyz, texel_0.w, texel_1.xyz, texel_1.w, texel_2.xyz, 0u, texel_3);
+    return TriangleCorners(
+        texel_0.xyz, texel_0.w, texel_1.xyz, texel_1.w, bitcast<vec3<f32>>(texel_2.xyz), texel_2.w, texel_3,
+    );
 }
 
 /// A layer of a map, two for each object.

@@ -91,8 +91,8 @@ shared_structs! {
         texel_y_2: f32,
         /// Unit normal at the third corner, world frame.
         normal_2: [f32; 3],
-        /// Unused.
-        padding: u32,
+        /// Charts of the object's map; 0 without one.
+        charts: u32,
         /// Texel column and row of the first corner, then of the second.
         texel_01: [f32; 4],
     }

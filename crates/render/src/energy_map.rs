@@ -80,14 +80,17 @@ impl EnergyMap {
         if cells <= 1.0 {
             return self.irradiance_on(tile, place);
         }
-        let points = cells.ceil().min(MOST_POINTS);
+        let points = cells.ceil().min(MOST_POINTS) as u32;
         let mut sum = (DVec3::ZERO, 0.0);
-        for (y, x) in (0..points as u32).flat_map(|y| (0..points as u32).map(move |x| (y, x))) {
-            let at = place + (DVec2::new(x.into(), y.into()) + 0.5) / points - 0.5;
+        let mut tile = tile;
+        for (y, x) in (0..points).flat_map(|y| (0..points).map(move |x| (y, x))) {
+            let at = place + (DVec2::new(x.into(), y.into()) + 0.5) / f64::from(points) - 0.5;
             if at.cmplt(DVec2::ZERO).any() || at.cmpgt(self.tiles.extent).any() {
                 continue;
             }
-            let Some(tile) = self.tiles.at(layer, at) else { continue };
+            if !self.tiles.covers(tile, at) {
+                tile = self.tiles.at(layer, at).unwrap_or(tile);
+            }
             if self.holds_surface(tile, at) {
                 sum = (sum.0 + self.irradiance_on(tile, at), sum.1 + 1.0);
             }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_surface::{
-    BoundingSphere, Bvh, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
+    BoundingSphere, Bvh, caster_bounds, check_map_uvs, light_surfaces, scene_bounds, separate_touching, world_triangles,
 };
 
 use crate::{
@@ -45,6 +45,7 @@ impl HostScene {
         let bvh_time = start.elapsed();
 
         let start = Instant::now();
+        check_map_uvs(scene)?;
         let maps = plan_maps(scene, &triangles[..of_objects]);
         let maps_time = start.elapsed();
 

@@ -4,7 +4,7 @@ use diacaustic_scene::{Camera, Object, RenderSettings, Scene};
 use diacaustic_surface::{MapLayout, MapTiles, WorldTriangle, texel_areas};
 use glam::{Mat3, Vec3};
 
-/// Texels along the longer side of the plane of a map whose size nobody chose: at least, at most. Its tiles may be coarser or finer.
+/// Units of the plane of a map whose size nobody chose in the extent of the object: at least, at most. Its tiles may be coarser or finer.
 const DEFAULT_SIZES: std::ops::RangeInclusive<f32> = 16.0..=2048.0;
 
 /// An object's energy map before its tiles are known.
@@ -27,16 +27,6 @@ impl MapPlan {
     pub fn texel_areas(&self, tiles: &MapTiles) -> Vec<f64> {
         texel_areas(&self.layout, tiles, &self.receivers)
     }
-
-    /// Metres in a unit of the plane, on average over the surface.
-    pub fn metres_per_unit(&self) -> f64 {
-        let areas = self.receivers.iter().map(|triangle| {
-            let [a, b, c] = self.layout.corners[triangle.triangle as usize].map(|place| place.as_dvec2());
-            (f64::from(triangle.double_area_normal().length()), (b - a).perp_dot(c - a).abs())
-        });
-        let (surface, plane) = areas.fold((0.0, 0.0), |sum, of_one| (sum.0 + of_one.0, sum.1 + of_one.1));
-        if plane > 0.0 { (surface / plane).sqrt() } else { 0.0 }
-    }
 }
 
 /// The maps of all receivers, object by object.
@@ -49,16 +39,19 @@ pub(crate) fn plan_maps(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<Optio
             return None;
         }
         let stated = object.map_size.or(scene.settings.map_size);
-        let size = stated.unwrap_or_else(|| default_size(&scene.camera, &scene.settings, object));
+        let layout = match stated {
+            Some(size) => MapLayout::new(object, size),
+            None => MapLayout::with_texel_width(object, default_texel_width(&scene.camera, &scene.settings, object)),
+        };
         let receivers = own.iter().filter(receives).copied().collect();
-        Some(MapPlan { layout: MapLayout::new(object, size), is_stated: stated.is_some(), receivers })
+        Some(MapPlan { layout, is_stated: stated.is_some(), receivers })
     };
     scene.objects.iter().enumerate().map(plan).collect()
 }
 
-/// The size that makes a texel half as wide as the camera's pixels are on the object, on average over directions, where it is
-/// nearest to the point looked at.
-fn default_size(camera: &Camera, settings: &RenderSettings, object: &Object) -> u32 {
+/// A texel half as wide as the camera's pixels are on the object, on average over directions, where it is nearest to the point looked at;
+/// metres.
+fn default_texel_width(camera: &Camera, settings: &RenderSettings, object: &Object) -> f32 {
     let (low, high) = object
         .mesh
         .positions
@@ -71,7 +64,6 @@ fn default_size(camera: &Camera, settings: &RenderSettings, object: &Object) -> 
     // A surface seen at an angle spreads a pixel over 1/cos of its area.
     let thinnest = Mat3::IDENTITY.col((high - low).min_position());
     let cosine = view.normalize_or_zero().dot(thinnest).abs().max(0.1);
-    let texel = 0.5 * pixel / cosine.sqrt();
-    let texels = (high - low).max_element() / texel.max(f32::MIN_POSITIVE);
-    texels.clamp(*DEFAULT_SIZES.start(), *DEFAULT_SIZES.end()).ceil() as u32
+    let extent = (high - low).max_element();
+    (0.5 * pixel / cosine.sqrt()).clamp(extent / DEFAULT_SIZES.end(), extent / DEFAULT_SIZES.start())
 }

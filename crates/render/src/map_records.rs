@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn every_place_is_found_on_its_tile() {
-        let layout = MapLayout { width: 3073, height: 1025, layers: 2, corners: Vec::new() };
+        let layout = MapLayout { width: 3073, height: 1025, layers: 2, ..Default::default() };
         let mut leaves = Vec::new();
         for layer in 0..2 {
             let mut open: Vec<_> = (0..3).map(|x| MapSquare { layer, level: 0, x, y: 0 }).collect();

@@ -403,7 +403,7 @@ fn map_sizes(plans: &[Option<MapPlan>], choice: &TileChoice) -> Vec<MapSize> {
     planned
         .filter_map(|(object, ((plan, tiles), width))| {
             let (plan, tiles) = (plan.as_ref()?, tiles.as_ref()?);
-            let metres = plan.metres_per_unit();
+            let metres = f64::from(plan.layout.metres_per_texel);
             Some(MapSize {
                 object,
                 width: plan.layout.width,

@@ -139,7 +139,7 @@ fn triangle_corners(t: &WorldTriangle, map: Option<&MapPlan>) -> shaders::Triang
         normal_1: normals[1].into(),
         texel_y_2: places[2].y,
         normal_2: normals[2].into(),
-        padding: 0,
+        charts: map.map_or(0, |map| map.layout.chart_count),
         texel_01: [places[0].x, places[0].y, places[1].x, places[1].y],
     }
 }

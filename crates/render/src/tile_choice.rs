@@ -4,7 +4,7 @@
 use std::{cmp::Ordering, collections::BinaryHeap};
 
 use diacaustic_shaders::Sighting;
-use diacaustic_surface::{FINEST_LEVEL, MapSquare, MapTiles};
+use diacaustic_surface::{FINEST_LEVEL, MapLayout, MapSquare, MapTiles};
 use glam::DVec2;
 
 use crate::map_plan::MapPlan;
@@ -95,7 +95,7 @@ pub(crate) fn choose_tiles(
         for (layer, known) in (0..plan.layout.layers).zip(&evidence[2 * map..]) {
             for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
                 let square = MapSquare { layer, level: 0, x, y };
-                fronts.push(grow(&mut nodes, map, square, &known.within(square, LIT_MARGIN)));
+                fronts.push(grow(&mut nodes, map, plan, square, &known.within(square, LIT_MARGIN)));
             }
         }
     }
@@ -154,25 +154,36 @@ impl Evidence {
 }
 
 /// Adds a square and those in it; returns its index.
-fn grow(nodes: &mut Vec<Node>, map: usize, square: MapSquare, known: &Evidence) -> usize {
+fn grow(nodes: &mut Vec<Node>, map: usize, plan: &MapPlan, square: MapSquare, known: &Evidence) -> usize {
     let quarters = square.children().map(|child| known.within(child, LIT_MARGIN));
     let pixels = known.pixels();
     let is_lit = !known.lit.is_empty();
     // A square may be seen in part, so its finest quarter decides.
     let densest = 4.0 * quarters.iter().map(Evidence::pixels).fold(0.0, f64::max);
     let coarseness = if is_lit { 1.0 } else { UNLIT_COARSENESS };
-    let cells = (TEXELS_PER_PIXEL * densest).sqrt() / coarseness;
+    // Charts are apart by more than a unit, so that light does not leak from one to another through cells of a unit.
+    let keeps_apart = is_lit && plan.layout.chart_count > 1;
+    let units = if keeps_apart { width_in_units(&plan.layout, square.level) } else { 0.0 };
+    let seen_cells = (TEXELS_PER_PIXEL * densest).sqrt() / coarseness;
     let node = nodes.len();
     let importance = if is_lit { pixels } else { UNLIT_IMPORTANCE * pixels };
     // The power of two that is nearest in ratio.
-    let seen_cells = cells.max(1.0).log2().round() as u32;
-    let wanted = seen_cells.clamp(if is_lit { UNSEEN_CELLS } else { 0 }, MOST_TILE_CELLS);
+    let cells = (seen_cells.max(1.0).log2().round() as u32).max(units.max(1.0).log2().ceil() as u32);
+    let wanted = cells.clamp(if is_lit { UNSEEN_CELLS } else { 0 }, MOST_TILE_CELLS);
     nodes.push(Node { map, square, pixels, importance, wanted, children: None });
-    if seen_cells > TILE_CELLS && known.seen.len() >= LEAST_SIGHTINGS && square.level < FINEST_LEVEL {
+    let can_tell_parts = known.seen.len() >= LEAST_SIGHTINGS || units > f64::from(1 << TILE_CELLS);
+    if cells > TILE_CELLS && can_tell_parts && square.level < FINEST_LEVEL {
         let pairs: [_; 4] = std::array::from_fn(|quarter| (square.children()[quarter], &quarters[quarter]));
-        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, map, child, quarter)));
+        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, map, plan, child, quarter)));
     }
     node
+}
+
+/// The width of a square of a level, in units of the plane.
+fn width_in_units(layout: &MapLayout, level: u32) -> f64 {
+    let [columns, rows] = MapTiles::roots(layout).map(f64::from);
+    let (width, height) = (f64::from(layout.width - 1) / columns, f64::from(layout.height - 1) / rows);
+    width.max(height) / f64::from(1u32 << level)
 }
 
 impl Node {
@@ -293,15 +304,13 @@ fn texel_width(tiles: &MapTiles, map: usize, nodes: &[Node], chosen: &[Option<u3
 #[cfg(test)]
 mod tests {
     use diacaustic_shaders::NONE;
-    use diacaustic_surface::MapLayout;
-
     use super::*;
 
     const SIDE: u32 = 128;
 
     /// A floor of 1000 units, of which the camera sees a corner 10 wide, with 4 pixels a sighting, and light falls on half of that.
     fn choice(budget: u64) -> TileChoice {
-        let layout = MapLayout { width: 1001, height: 1001, layers: 2, corners: Vec::new() };
+        let layout = MapLayout { width: 1001, height: 1001, layers: 2, ..Default::default() };
         let plan = MapPlan { layout, is_stated: false, receivers: Vec::new() };
         let at = |k: u32| (f64::from(k) + 0.5) * 10.0 / f64::from(SIDE);
         let places = || (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| DVec2::new(at(x), at(y))));

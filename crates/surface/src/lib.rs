@@ -13,7 +13,7 @@ mod triangles;
 
 pub use bounds::{BoundingSphere, caster_bounds, merge_spheres, scene_bounds};
 pub use bvh::{Bvh, BvhNode, MAX_DEPTH};
-pub use chart::{MapLayout, uvs_overlap};
+pub use chart::{MapLayout, check_map_uvs};
 pub use error::Error;
 pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use texel_area::texel_areas;

@@ -260,7 +260,7 @@ mod tests {
     fn a_unit_square_has_whole_halved_and_quartered_texels() {
         let p = [Vec2::new(0.0, 0.0), Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0), Vec2::new(0.0, 3.0)];
         let layout =
-            MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]] };
+            MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]], ..Default::default() };
         let world = layout.corners.iter().enumerate().map(|(i, places)| WorldTriangle {
             triangle: i as u32,
             ..triangle(places.map(|place| Vec3::new(place.x, 0.0, place.y)))
@@ -278,7 +278,7 @@ mod tests {
     #[test]
     fn areas_are_the_integral_of_the_weights() {
         let places = [Vec2::new(0.3, 0.2), Vec2::new(5.7, 1.1), Vec2::new(2.2, 6.4)];
-        let layout = MapLayout { width: 7, height: 8, layers: 1, corners: vec![places] };
+        let layout = MapLayout { width: 7, height: 8, layers: 1, corners: vec![places], ..Default::default() };
         let areas = texel_areas(&layout, &MapTiles::dense(&layout), &[triangle([Vec3::ZERO, Vec3::X, Vec3::Y])]);
         let steps = 1500;
         let mut expected = vec![0.0; areas.len()];
@@ -312,7 +312,7 @@ mod tests {
             if fold {
                 places[2] = places[0].lerp(places[1], 0.3);
             }
-            let layout = MapLayout { width: 31, height: 21, layers: 1, corners: vec![places] };
+            let layout = MapLayout { width: 31, height: 21, layers: 1, corners: vec![places], ..Default::default() };
             let world = triangle(corners.map(Vec3::from));
             let areas = texel_areas(&layout, &MapTiles::dense(&layout), &[world]);
             let surface = 0.5 * world_double_area(world.corners);
@@ -331,7 +331,7 @@ mod tests {
             if fold {
                 places[2] = places[0].lerp(places[1], 0.3);
             }
-            let layout = MapLayout { width: 33, height: 17, layers: 2, corners: vec![places] };
+            let layout = MapLayout { width: 33, height: 17, layers: 2, corners: vec![places], ..Default::default() };
             let roots = MapTiles::roots(&layout);
             prop_assert_eq!(roots, [2, 1]);
             let mut open: Vec<MapSquare> =

@@ -123,6 +123,12 @@ impl MapTiles {
         self.tiles[..after].last().filter(|tile| tile.square.layer == layer)
     }
 
+    /// Whether a tile lies under a place of its layer's plane.
+    pub fn covers(&self, tile: &MapTile, place: DVec2) -> bool {
+        let at = (place - self.origin(tile)) / self.square_size(tile.square.level);
+        at.cmpge(DVec2::ZERO).all() && at.cmplt(DVec2::ONE).all()
+    }
+
     /// The lower corner of a tile, in the layout's texels.
     pub fn origin(&self, tile: &MapTile) -> DVec2 {
         UVec2::new(tile.square.x, tile.square.y).as_dvec2() * self.square_size(tile.square.level)
