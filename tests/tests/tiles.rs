@@ -1,7 +1,7 @@
 //! Maps whose size the scene leaves open: as fine as the camera sees them, whole in energy, the same in every run, and within their budget.
 
 use diacaustic::{EnergyMap, MapTile, Renderer, RendererOptions, SceneReport, glam::DVec2};
-use diacaustic_scene::Scene;
+use diacaustic_scene::{RenderSettings, Scene};
 use diacaustic_tests::{gpu, mean, scene};
 
 /// A renderer with a scene set, and what that has built.
@@ -126,7 +126,9 @@ fn even_light_is_even_over_tiles_of_every_size() {
         let [[border, border_deviation], [inside, inside_deviation]] = evenness(&map, photon);
         assert!((border / 3.0 - 1.0).abs() < 0.004, "{footprints}: {border} W/m² on borders");
         assert!((inside / 3.0 - 1.0).abs() < 0.002, "{footprints}: {inside} W/m² inside");
-        assert!(border_deviation < 1.25 * inside_deviation, "{footprints}: {border_deviation} against {inside_deviation}");
+        // The photons are more even than random ones, in large texels more so than in those of half a cell on borders.
+        assert!(inside_deviation < 0.25, "{footprints}: {inside_deviation} inside");
+        assert!(border_deviation < 0.4, "{footprints}: {border_deviation} on borders");
     }
 }
 
@@ -156,8 +158,8 @@ fn open_maps_are_the_same_in_every_run_in_pieces_and_merged() {
 #[test]
 fn a_small_budget_keeps_the_energy_and_is_reported() {
     let photons = |budget| {
-        let mut scene = ball_on_a_floor(5.0, ", guiding = false, width = 512, height = 512").clone();
-        scene.settings.map_budget = budget;
+        let mut scene = ball_on_a_floor(5.0, ", guiding = false");
+        scene.settings = RenderSettings { width: 512, height: 512, map_budget: budget, ..scene.settings };
         let (mut renderer, report) = set(&scene);
         renderer.emit_photons(0..50_000).unwrap();
         let map = renderer.energy_map(0).unwrap().unwrap();
