@@ -188,7 +188,10 @@ fn a_stated_size_is_even_or_refused() {
     assert_eq!((map.width, map.height, map.sums.len()), (100, 100, 20_000));
     assert_eq!(map.tiles.tiles.iter().map(|tile| tile.cells).collect::<Vec<_>>(), [[99, 99]; 2]);
     let floor = &report.maps[0];
-    assert!((floor.texel_width - 2.0 / 99.0).abs() < 1e-6 && floor.texel_width == floor.finest_texel_width, "{floor:?}");
+    assert!(
+        (floor.texel_width - 2.0 / 99.0).abs() < 1e-6 && floor.texel_width == floor.finest_texel_width,
+        "{floor:?}"
+    );
 
     let mut large = scene.clone();
     large.settings.map_size = Some(8192);

@@ -198,7 +198,14 @@ mod tests {
         let path = folder.path().join("statistics.json");
         let statistics = Statistics {
             version: "0.1.0".into(),
-            maps: vec![Map { object: "floor".into(), width: 8, height: 4, layers: 1, texel_width: 0.5, ..Map::default() }],
+            maps: vec![Map {
+                object: "floor".into(),
+                width: 8,
+                height: 4,
+                layers: 1,
+                texel_width: 0.5,
+                ..Map::default()
+            }],
             lights: vec![LightLedger { name: "lamp".into(), residue: [0, -1, 0], ..Default::default() }],
             ..Default::default()
         };

@@ -68,7 +68,8 @@ impl EnergyMap {
     /// mean over its surroundings, which count as far as they hold a surface.
     pub fn resampled(&self) -> Vec<DVec3> {
         let texels = (0..self.layers).flat_map(|layer| (0..self.height).map(move |y| (layer, y)));
-        let texels = texels.flat_map(|(layer, y)| (0..self.width).map(move |x| (layer, DVec2::new(x.into(), y.into()))));
+        let texels =
+            texels.flat_map(|(layer, y)| (0..self.width).map(move |x| (layer, DVec2::new(x.into(), y.into()))));
         texels.map(|(layer, place)| self.mean_around(layer, place)).collect()
     }
 

@@ -35,6 +35,7 @@ mod guide;
 mod host_scene;
 mod layers;
 mod lights;
+mod map_placement;
 mod map_plan;
 mod map_records;
 mod map_sums;

@@ -1,11 +1,11 @@
 //! Energy maps on the device: the sums that photons fill, and the irradiance that follows from them.
 
 use diacaustic_shaders::{RECORDS_WIDTH_BITS, RESOLVE, ResolveParams, WORKGROUP_SIZE};
-use diacaustic_surface::{MapLayout, MapTiles};
 
 use crate::{
     EnergyMap, Error,
     gpu::{Binding, Gpu, Purpose, texture_bytes},
+    map_placement::MapPlacement,
 };
 
 /// Bytes of a texel's three 64-bit sums.
@@ -35,16 +35,6 @@ pub(crate) fn most_texels(limits: &wgpu::Limits, groups: usize) -> u64 {
 /// Entries of irradiance of a texel: with several groups, all light's stands beside theirs.
 fn irradiance_entries(groups: u64) -> u64 {
     if groups > 1 { 1 + groups } else { 1 }
-}
-
-/// One object's map within the buffers of all maps.
-#[derive(Clone, Debug)]
-pub(crate) struct MapPlacement {
-    pub layout: MapLayout,
-    pub tiles: MapTiles,
-    pub first_texel: u64,
-    /// Area of each texel, m².
-    pub areas: Vec<f64>,
 }
 
 /// The maps of all objects on the device.
@@ -112,8 +102,7 @@ impl EnergyMaps {
         let purpose = if groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
         let words_bytes = groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * WORDS_BYTES;
-        let areas: Vec<f32> =
-            placements.iter().flatten().flat_map(|map| &map.areas).map(|&area| area as f32).collect();
+        let areas: Vec<f32> = placements.iter().flatten().flat_map(|map| &map.areas).map(|&area| area as f32).collect();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
         let areas = gpu.filled(AREAS, &areas)?;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -142,11 +131,8 @@ impl EnergyMaps {
     /// Low and high words of the sums of a light group.
     pub fn sums_of(&self, group: usize) -> [wgpu::BindingResource<'_>; 2] {
         let bytes = self.group_texels() * WORDS_BYTES;
-        let part = |buffer| wgpu::BufferBinding {
-            buffer,
-            offset: group as u64 * bytes,
-            size: std::num::NonZero::new(bytes),
-        };
+        let part =
+            |buffer| wgpu::BufferBinding { buffer, offset: group as u64 * bytes, size: std::num::NonZero::new(bytes) };
         [&self.sums.low, &self.sums.high].map(|buffer| wgpu::BindingResource::Buffer(part(buffer)))
     }
 

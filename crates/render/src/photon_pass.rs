@@ -137,12 +137,7 @@ pub(crate) struct PhotonScene<'a> {
 }
 
 impl Photons {
-    pub fn new(
-        gpu: &Gpu,
-        pass: &mut PhotonPass,
-        scene: &PhotonScene,
-        loop_limit: LoopLimit,
-    ) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, pass: &mut PhotonPass, scene: &PhotonScene, loop_limit: LoopLimit) -> Result<Self, Error> {
         let guided = scene.settings.guiding;
         let params = gpu.uniform::<PhotonParams>("photons");
         let mut lights = Vec::new();

@@ -8,20 +8,20 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
+    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, PilotReport, RenderParams,
     SceneReport, Statistics,
     camera_pass::{CameraPass, Samples, Sightings},
     display_pass::DisplayPass,
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
-    map_plan::MapPlan,
-    map_sums::{EnergyMaps, MapPlacement, ResolvePass, TEXEL_BYTES, most_texels},
+    map_placement::{map_sizes, place_maps, texel_budget},
+    map_sums::{EnergyMaps, ResolvePass, most_texels},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
-    tile_choice::{TileChoice, choose_tiles},
+    tile_choice::choose_tiles,
 };
 
 /// What is set once for a renderer.
@@ -390,49 +390,6 @@ fn light_reports(scene: &Scene, lights: &Lights) -> Vec<LightReport> {
     let names = names.chain(emissive_materials(scene).into_iter().map(|(_, name)| name));
     let flux = |number: usize| lights.emitters.iter().find(|e| e.number == number).map_or(Vec3::ZERO, |e| e.flux);
     names.enumerate().map(|(number, name)| LightReport { name, flux: flux(number).to_array() }).collect()
-}
-
-/// Texels that the maps whose size the scene leaves open may have in each light group.
-fn texel_budget(plans: &[Option<MapPlan>], bytes: u64, limits: &wgpu::Limits, groups: usize) -> u64 {
-    let stated: u64 = plans.iter().flatten().filter(|plan| plan.is_stated).map(|plan| plan.layout.texel_count()).sum();
-    (bytes / TEXEL_BYTES / groups as u64).min(most_texels(limits, groups).saturating_sub(stated))
-}
-
-fn map_sizes(plans: &[Option<MapPlan>], choice: &TileChoice) -> Vec<MapSize> {
-    let planned = plans.iter().zip(&choice.tiles).zip(&choice.widths).enumerate();
-    planned
-        .filter_map(|(object, ((plan, tiles), width))| {
-            let (plan, tiles) = (plan.as_ref()?, tiles.as_ref()?);
-            let metres = f64::from(plan.layout.metres_per_texel);
-            Some(MapSize {
-                object,
-                width: plan.layout.width,
-                height: plan.layout.height,
-                layers: plan.layout.layers,
-                tiles: tiles.tiles.len() as u64,
-                texels: tiles.texel_count(),
-                texel_width: width.given * metres,
-                wanted_texel_width: width.wanted * metres,
-                finest_texel_width: width.finest * metres,
-            })
-        })
-        .collect()
-}
-
-/// Places the maps one after the other, and integrates the areas of their texels.
-fn place_maps(plans: Vec<Option<MapPlan>>, choice: TileChoice, most: u64) -> Result<Vec<Option<MapPlacement>>, Error> {
-    let asked: u64 = choice.tiles.iter().flatten().map(|tiles| tiles.texel_count()).sum();
-    if asked > most {
-        return Err(Error::MapsTooLarge { asked: asked * TEXEL_BYTES, available: most * TEXEL_BYTES });
-    }
-    let mut next_texel = 0;
-    let placed = plans.into_iter().zip(choice.tiles).map(|(plan, tiles)| {
-        let (plan, tiles) = (plan?, tiles?);
-        let first_texel = next_texel;
-        next_texel += tiles.texel_count();
-        Some(MapPlacement { first_texel, areas: plan.texel_areas(&tiles), tiles, layout: plan.layout })
-    });
-    Ok(placed.collect())
 }
 
 fn check_limits(found: &wgpu::Limits) -> Result<(), Error> {

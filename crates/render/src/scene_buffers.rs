@@ -91,12 +91,7 @@ impl SceneBuffers {
     }
 
     /// Tells the kernels where the maps' tiles lie.
-    pub fn place_maps(
-        &mut self,
-        gpu: &Gpu,
-        layout: &wgpu::BindGroupLayout,
-        maps: &EnergyMaps,
-    ) -> Result<(), Error> {
+    pub fn place_maps(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, maps: &EnergyMaps) -> Result<(), Error> {
         let placed = maps.placements.iter().map(|map| map.as_ref().map(|map| (&map.tiles, map.first_texel)));
         let texture = gpu.records(MAPS, &map_records(placed))?;
         self.bytes += texture_bytes(&texture);

@@ -1,7 +1,7 @@
 //! Which tiles a map has whose size the scene leaves open: as fine as the camera sees a place, where light falls, within a budget;
 //! docs/energy-maps.md, "Tiles".
 
-use std::{cmp::Ordering, collections::BinaryHeap};
+use std::{cmp::Ordering, collections::BinaryHeap, ops::Range};
 
 use diacaustic_shaders::Sighting;
 use diacaustic_surface::{FINEST_LEVEL, MapLayout, MapSquare, MapTiles};
@@ -40,7 +40,6 @@ struct Evidence {
 /// A square of the tree that would be had without a budget.
 #[derive(Debug)]
 struct Node {
-    map: usize,
     square: MapSquare,
     /// Pixels that show it.
     pixels: f64,
@@ -89,18 +88,21 @@ pub(crate) fn choose_tiles(
     let evidence = gather(plans, sightings, pixels, landings);
     let mut nodes = Vec::new();
     let mut fronts = Vec::new();
+    let mut first_nodes = Vec::with_capacity(plans.len() + 1);
     for (map, plan) in plans.iter().enumerate() {
+        first_nodes.push(nodes.len());
         let Some(plan) = plan.as_ref().filter(|plan| !plan.is_stated) else { continue };
         let [columns, rows] = MapTiles::roots(&plan.layout);
         for (layer, known) in (0..plan.layout.layers).zip(&evidence[2 * map..]) {
             for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
                 let square = MapSquare { layer, level: 0, x, y };
-                fronts.push(grow(&mut nodes, map, plan, square, &known.within(square, LIT_MARGIN)));
+                fronts.push(grow(&mut nodes, plan, square, &known.within(square, LIT_MARGIN)));
             }
         }
     }
+    first_nodes.push(nodes.len());
     let leaves = refine(&nodes, &fronts, budget);
-    collect(plans, &nodes, &leaves)
+    collect(plans, &nodes, &first_nodes, &leaves)
 }
 
 /// Sorts what is known by object and layer.
@@ -154,7 +156,7 @@ impl Evidence {
 }
 
 /// Adds a square and those in it; returns its index.
-fn grow(nodes: &mut Vec<Node>, map: usize, plan: &MapPlan, square: MapSquare, known: &Evidence) -> usize {
+fn grow(nodes: &mut Vec<Node>, plan: &MapPlan, square: MapSquare, known: &Evidence) -> usize {
     let quarters = square.children().map(|child| known.within(child, LIT_MARGIN));
     let pixels = known.pixels();
     let is_lit = !known.lit.is_empty();
@@ -170,11 +172,11 @@ fn grow(nodes: &mut Vec<Node>, map: usize, plan: &MapPlan, square: MapSquare, kn
     // The power of two that is nearest in ratio.
     let cells = (seen_cells.max(1.0).log2().round() as u32).max(units.max(1.0).log2().ceil() as u32);
     let wanted = cells.clamp(if is_lit { UNSEEN_CELLS } else { 0 }, MOST_TILE_CELLS);
-    nodes.push(Node { map, square, pixels, importance, wanted, children: None });
+    nodes.push(Node { square, pixels, importance, wanted, children: None });
     let can_tell_parts = known.seen.len() >= LEAST_SIGHTINGS || units > f64::from(1 << TILE_CELLS);
     if cells > TILE_CELLS && can_tell_parts && square.level < FINEST_LEVEL {
         let pairs: [_; 4] = std::array::from_fn(|quarter| (square.children()[quarter], &quarters[quarter]));
-        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, map, plan, child, quarter)));
+        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, plan, child, quarter)));
     }
     node
 }
@@ -251,21 +253,23 @@ fn refine(nodes: &[Node], roots: &[usize], budget: u64) -> Vec<Front> {
     leaves
 }
 
-/// The tiles of the chosen leaves, map by map in the order of the tree, and those of maps with a stated size.
-fn collect(plans: &[Option<MapPlan>], nodes: &[Node], leaves: &[Front]) -> TileChoice {
+/// The tiles of the chosen leaves, map by map in the order of the tree, and those of maps with a stated size. The nodes of a map stand from
+/// its first node on to that of the next.
+fn collect(plans: &[Option<MapPlan>], nodes: &[Node], first_nodes: &[usize], leaves: &[Front]) -> TileChoice {
     let mut chosen = vec![None; nodes.len()];
     for leaf in leaves {
         chosen[leaf.node] = Some(leaf.cells);
     }
     let mut choice = TileChoice::default();
     for (map, plan) in plans.iter().enumerate() {
-        let squares = nodes.iter().zip(&chosen).filter(|(node, _)| node.map == map);
+        let own = first_nodes[map]..first_nodes[map + 1];
+        let squares = nodes[own.clone()].iter().zip(&chosen[own.clone()]);
         let squares = squares.filter_map(|(node, cells)| Some((node.square, [1 << (*cells)?; 2])));
         choice.tiles.push(plan.as_ref().map(|plan| match plan.is_stated {
             true => MapTiles::dense(&plan.layout),
             false => MapTiles::new(&plan.layout, MapTiles::roots(&plan.layout), squares),
         }));
-        let width = |tiles: &MapTiles| texel_width(tiles, map, nodes, &chosen);
+        let width = |tiles: &MapTiles| texel_width(tiles, nodes, own, &chosen);
         choice.widths.push(choice.tiles[map].as_ref().map_or_else(TexelWidth::default, width));
     }
     choice
@@ -274,13 +278,12 @@ fn collect(plans: &[Option<MapPlan>], nodes: &[Node], leaves: &[Front]) -> TileC
 /// Pixels that a tile which nobody sees counts when widths are averaged.
 const UNSEEN_PIXELS: f64 = 1e-6;
 
-/// The mean width of a map's texels: of those that were wanted, and of those that there are.
-fn texel_width(tiles: &MapTiles, map: usize, nodes: &[Node], chosen: &[Option<u32>]) -> TexelWidth {
+/// The mean width of the texels of a map with its own nodes: of those that were wanted, and of those that there are.
+fn texel_width(tiles: &MapTiles, nodes: &[Node], own: Range<usize>, chosen: &[Option<u32>]) -> TexelWidth {
     let finest = tiles.tiles.iter().map(|tile| tiles.cell_size(tile).max_element()).fold(f64::INFINITY, f64::min);
     let mut sums = [0.0; 3];
-    let mut stack: Vec<(usize, Option<f64>)> = Vec::new();
-    let is_root = |node: &Node| node.map == map && node.square.level == 0;
-    stack.extend(nodes.iter().enumerate().filter(|(_, node)| is_root(node)).map(|(root, _)| (root, None)));
+    let roots = own.filter(|&node| nodes[node].square.level == 0);
+    let mut stack: Vec<(usize, Option<f64>)> = roots.map(|root| (root, None)).collect();
     while let Some((index, given)) = stack.pop() {
         let node = &nodes[index];
         let width = |cells: u32| tiles.square_size(node.square.level).max_element() / f64::from(1u32 << cells);
@@ -303,14 +306,19 @@ fn texel_width(tiles: &MapTiles, map: usize, nodes: &[Node], chosen: &[Option<u3
 
 #[cfg(test)]
 mod tests {
-    use diacaustic_shaders::NONE;
     use super::*;
+    use diacaustic_shaders::NONE;
 
     const SIDE: u32 = 128;
 
     /// A floor of 1000 units, of which the camera sees a corner 10 wide, with 4 pixels a sighting, and light falls on half of that.
     fn choice(budget: u64) -> TileChoice {
-        let layout = MapLayout { width: 1001, height: 1001, layers: 2, ..Default::default() };
+        choice_of(1, budget)
+    }
+
+    /// The same of a surface of several charts.
+    fn choice_of(chart_count: u32, budget: u64) -> TileChoice {
+        let layout = MapLayout { width: 1001, height: 1001, layers: 2, chart_count, ..Default::default() };
         let plan = MapPlan { layout, is_stated: false, receivers: Vec::new() };
         let at = |k: u32| (f64::from(k) + 0.5) * 10.0 / f64::from(SIDE);
         let places = || (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| DVec2::new(at(x), at(y))));
@@ -333,7 +341,9 @@ mod tests {
         let width_at = |x: f64, y: f64, layer| {
             let holds = |tile: &&diacaustic_surface::MapTile| {
                 let inside = DVec2::new(x, y) - tiles.origin(tile);
-                tile.square.layer == layer && inside.cmpge(DVec2::ZERO).all() && inside.cmplt(tiles.square_size(tile.square.level)).all()
+                tile.square.layer == layer
+                    && inside.cmpge(DVec2::ZERO).all()
+                    && inside.cmplt(tiles.square_size(tile.square.level)).all()
             };
             let found: Vec<_> = tiles.tiles.iter().filter(holds).collect();
             assert_eq!(found.len(), 1, "({x}, {y}) is covered {} times", found.len());
@@ -349,6 +359,23 @@ mod tests {
         let widths = choice.widths[1];
         assert_eq!(widths.wanted, widths.given);
         assert!(ratio(widths.finest, 0.0195) <= 0.6, "{widths:?}");
+    }
+
+    #[test]
+    fn charts_are_kept_apart_where_light_falls() {
+        let choice = choice_of(7, u64::MAX);
+        let tiles = choice.tiles[1].as_ref().unwrap();
+        let lit = tiles
+            .tiles
+            .iter()
+            .filter(|tile| tile.square.layer == 0 && tiles.origin(tile).cmplt(DVec2::new(5.0, 10.0)).all());
+        for tile in lit {
+            assert!(tiles.cell_size(tile).max_element() <= 1.0, "{tile:?}");
+        }
+        assert!(
+            tiles.tiles.iter().any(|tile| tiles.cell_size(tile).max_element() > 50.0),
+            "nothing is coarse in the dark"
+        );
     }
 
     #[test]

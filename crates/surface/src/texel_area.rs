@@ -56,13 +56,7 @@ enum Spread {
 }
 
 /// Adds what lies on a square to the tiles in it.
-fn add(
-    tiles: &MapTiles,
-    index: &HashMap<MapSquare, MapTile>,
-    square: MapSquare,
-    spread: &Spread,
-    areas: &mut [f64],
-) {
+fn add(tiles: &MapTiles, index: &HashMap<MapSquare, MapTile>, square: MapSquare, spread: &Spread, areas: &mut [f64]) {
     let size = tiles.square_size(square.level);
     let origin = DVec2::new(square.x.into(), square.y.into()) * size;
     let is_met = match spread {
@@ -259,8 +253,13 @@ mod tests {
     #[test]
     fn a_unit_square_has_whole_halved_and_quartered_texels() {
         let p = [Vec2::new(0.0, 0.0), Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0), Vec2::new(0.0, 3.0)];
-        let layout =
-            MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]], ..Default::default() };
+        let layout = MapLayout {
+            width: 5,
+            height: 4,
+            layers: 1,
+            corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]],
+            ..Default::default()
+        };
         let world = layout.corners.iter().enumerate().map(|(i, places)| WorldTriangle {
             triangle: i as u32,
             ..triangle(places.map(|place| Vec3::new(place.x, 0.0, place.y)))

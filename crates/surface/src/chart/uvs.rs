@@ -31,25 +31,22 @@ fn check_object(object: &Object) -> Result<(), Error> {
         let place = middle(&flat[folded]);
         return Err(Error::FoldedMapUvs { object: object.name.clone(), triangle: has_area[folded], place });
     }
-    let (low, high) = flat.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| {
-        (low.min(p), high.max(p))
-    });
+    let (low, high) =
+        flat.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     let tolerance = TOLERANCE * (high - low).max_element().max(low.abs().max(high.abs()).max_element());
     let flat = FlatTriangles::new(flat);
     let overlap = |k: usize, other: usize| overlap_depth(&flat.corners[k], &flat.corners[other]) > tolerance;
     // The first triangle that overlaps a later one, and the first of those.
-    let overlapping = (0..has_area.len())
-        .into_par_iter()
-        .find_map_first(|k| {
-            let mut first = usize::MAX;
-            flat.any_near(k, |other| {
-                if other > k && other < first && overlap(k, other) {
-                    first = other;
-                }
-                false
-            });
-            (first != usize::MAX).then_some((k, first))
+    let overlapping = (0..has_area.len()).into_par_iter().find_map_first(|k| {
+        let mut first = usize::MAX;
+        flat.any_near(k, |other| {
+            if other > k && other < first && overlap(k, other) {
+                first = other;
+            }
+            false
         });
+        (first != usize::MAX).then_some((k, first))
+    });
     match overlapping {
         None => Ok(()),
         Some((k, other)) => Err(Error::OverlappingMapUvs {
