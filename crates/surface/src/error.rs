@@ -17,7 +17,8 @@ pub enum Error {
         depth: usize,
         /// Levels that the kernels follow.
         limit: usize,
-    },    /// Texture coordinates that are to be an object's map cover a place twice.
+    },
+    /// Texture coordinates that are to be an object's map cover a place twice.
     #[error(
         "object {object:?}: its texture coordinates cannot be its map: triangles {} and {} (from 0) both cover the place \
          ({:.5}, {:.5}); give each triangle a place of its own, or leave out map_uvs",

@@ -161,8 +161,13 @@ mod tests {
     #[test]
     fn a_unit_square_has_whole_halved_and_quartered_texels() {
         let p = [Vec2::new(0.0, 0.0), Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0), Vec2::new(0.0, 3.0)];
-        let layout =
-            MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]], ..Default::default() };
+        let layout = MapLayout {
+            width: 5,
+            height: 4,
+            layers: 1,
+            corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]],
+            ..Default::default()
+        };
         let world = layout.corners.iter().enumerate().map(|(i, places)| WorldTriangle {
             triangle: i as u32,
             ..triangle(places.map(|place| Vec3::new(place.x, 0.0, place.y)))

@@ -165,10 +165,8 @@ fn check_even_light(name: &str, object: &Object, layout: &MapLayout, photons: u3
     let areas = texel_areas(layout, &triangles);
     let surface: f64 = areas.iter().sum();
     // How much of a texel's surroundings on the plane is covered: all of it inside a chart.
-    let flat = |t: &WorldTriangle| WorldTriangle {
-        corners: layout.corners[t.triangle as usize].map(|p| p.extend(0.0)),
-        ..*t
-    };
+    let flat =
+        |t: &WorldTriangle| WorldTriangle { corners: layout.corners[t.triangle as usize].map(|p| p.extend(0.0)), ..*t };
     let covered = texel_areas(layout, &triangles.iter().map(flat).collect::<Vec<_>>());
     let texels = lit_evenly(layout, &triangles, photons);
     assert_eq!(texels.iter().map(|texel| texel.sum).sum::<i64>(), i64::from(photons) * UNITS, "{name}");
@@ -316,7 +314,12 @@ fn texels_are_few_however_small_the_triangles() {
             println!("{name}: {texels} texels for {asked}, {} charts, {} cells", layout.chart_count, layout.cell_count);
             assert!(texels < 5.0 * asked + 100.0, "{name}: {texels} texels where the area asks for {asked}");
         }
-        check_even_light(name, &object, &MapLayout::with_texel_width(&object, (surface / 4000.0).sqrt() as f32), 200_000);
+        check_even_light(
+            name,
+            &object,
+            &MapLayout::with_texel_width(&object, (surface / 4000.0).sqrt() as f32),
+            200_000,
+        );
     }
 }
 

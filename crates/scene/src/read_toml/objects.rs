@@ -10,7 +10,8 @@ use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
 use crate::{
-    Chart, Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj, primitives::are_perpendicular,
+    Chart, Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj,
+    primitives::are_perpendicular,
 };
 
 const OBJECT_KEYS: [&str; 12] = [

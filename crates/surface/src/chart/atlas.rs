@@ -113,8 +113,7 @@ impl Atlas {
         let origin = |(frame, (own, place)): (&Frame, (&UVec2, &UVec2))| {
             place.as_dvec2() + 0.5 * (own.as_dvec2() - 1.0 - frame.size / texel)
         };
-        let origins: Vec<DVec2> =
-            self.frames.iter().zip(sizes.iter().zip(&packing.places)).map(origin).collect();
+        let origins: Vec<DVec2> = self.frames.iter().zip(sizes.iter().zip(&packing.places)).map(origin).collect();
         let corners = |(triangle, &chart): (usize, &u32)| {
             let (frame, origin) = (&self.frames[chart as usize], origins[chart as usize]);
             facets.corners(triangle as u32).map(|corner| (origin + frame.place(corner) / texel).as_vec2())

@@ -43,7 +43,10 @@ impl Frame {
     /// The rectangle around points of a plane with sides along a unit direction and across it.
     fn along(outline: &[DVec2], direction: DVec2) -> Self {
         let turned = |axis: DVec2| {
-            outline.iter().map(|p| p.dot(axis)).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+            outline
+                .iter()
+                .map(|p| p.dot(axis))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
         };
         let mut axes = [direction, direction.perp()];
         let mut ranges = axes.map(turned);

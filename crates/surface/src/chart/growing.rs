@@ -111,7 +111,11 @@ impl Charts {
     /// Lets each chart of few texels join the neighbour with the longest common border that faces about the same way.
     fn join_small(&mut self, facets: &Facets<'_>, patches: &Patches, texel: f64) {
         let area = |chart: &Chart| {
-            0.5 * chart.patches.iter().map(|&patch| patches.double_areas[patch as usize].as_dvec3().length()).sum::<f64>()
+            0.5 * chart
+                .patches
+                .iter()
+                .map(|&patch| patches.double_areas[patch as usize].as_dvec3().length())
+                .sum::<f64>()
         };
         let mut areas: Vec<f64> = self.charts.iter().map(area).collect();
         for small in 0..self.charts.len() {

@@ -86,7 +86,8 @@ pub fn scanned(bands: u32, noise: f64) -> Mesh {
         let normal = DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
         let waves = (0..7).map(|octave| {
             let frequency = f64::from(1 << octave);
-            (normal * 3.0 * frequency + f64::from(octave)).to_array().iter().map(|x| x.sin()).product::<f64>() * 0.06 / frequency
+            (normal * 3.0 * frequency + f64::from(octave)).to_array().iter().map(|x| x.sin()).product::<f64>() * 0.06
+                / frequency
         });
         let number = if band == 0 || band == bands { band } else { band * sectors + sector % sectors };
         (normal * (1.0 + waves.sum::<f64>() + noise * width * (hashed(number) - 0.5))).as_vec3()
