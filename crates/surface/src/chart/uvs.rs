@@ -84,3 +84,82 @@ fn common_place(first: &[DVec2; 3], second: &[DVec2; 3]) -> [f64; 2] {
     let count = common.len().max(1) as f64;
     (common.into_iter().sum::<DVec2>() / count).to_array()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use diacaustic_scene::Mesh;
+    use glam::{Affine3A, Vec2};
+
+    use super::*;
+
+    fn checked(mesh: Mesh) -> Result<(), Error> {
+        check_object(&Object {
+            name: "wall".to_owned(),
+            mesh: Arc::new(mesh),
+            world_from_object: Affine3A::IDENTITY,
+            materials: vec![0],
+            map_size: None,
+        })
+    }
+
+    /// A square of `side` × `side` squares of two triangles each, with texture coordinates from 0 to 1.
+    fn grid(side: u32) -> Mesh {
+        let mut mesh = Mesh::default();
+        for k in 0..(side + 1) * (side + 1) {
+            let uv = Vec2::new((k % (side + 1)) as f32, (k / (side + 1)) as f32) / side as f32;
+            mesh.positions.push(uv.extend(0.0));
+            mesh.uvs.push(uv);
+        }
+        for k in (0..side * side).map(|k| k / side * (side + 1) + k % side) {
+            mesh.triangles.extend([[k, k + 1, k + side + 2], [k, k + side + 2, k + side + 1]]);
+        }
+        mesh
+    }
+
+    #[test]
+    fn what_does_not_overlap_passes() {
+        checked(grid(100)).unwrap();
+        checked(Mesh::sphere(Vec3::ZERO, 1.0, 6)).unwrap();
+        // Mirrored triangles cover no place twice either.
+        let mut mirrored = grid(7);
+        mirrored.uvs.iter_mut().for_each(|uv| uv.x = -3.0 * uv.x);
+        checked(mirrored).unwrap();
+    }
+
+    #[test]
+    fn a_small_overlap_is_found_and_named() {
+        let mut mesh = grid(100);
+        // A vertex moves into the square beside it, by a hundredth of a square.
+        let moved = 50 * 101 + 50;
+        let first = mesh.positions.len() as u32;
+        mesh.positions.push(mesh.positions[moved]);
+        mesh.uvs.push(mesh.uvs[moved] + Vec2::new(1e-4, 2e-5));
+        // The triangle at whose third corner it is.
+        let number = mesh.triangles.iter().position(|t| t[2] == moved as u32).unwrap();
+        mesh.triangles[number][2] = first;
+        let Err(Error::OverlappingMapUvs { object, triangles, place }) = checked(mesh.clone()) else {
+            panic!("passes")
+        };
+        assert_eq!(object, "wall");
+        assert!(triangles.contains(&(number as u32)) && triangles[0] < triangles[1], "{triangles:?}");
+        assert!((place[0] - 0.5).abs() < 0.02 && (place[1] - 0.5).abs() < 0.02, "{place:?}");
+        let message = checked(mesh).unwrap_err().to_string();
+        assert!(message.contains("\"wall\"") && message.contains("both cover the place (0.50"), "{message}");
+    }
+
+    #[test]
+    fn twice_the_same_place_is_found() {
+        let overlap = checked(Mesh::cuboid(Vec3::ZERO, Vec3::ONE));
+        assert!(matches!(overlap, Err(Error::OverlappingMapUvs { triangles: [0, 2], .. })), "{overlap:?}");
+    }
+
+    #[test]
+    fn a_folded_triangle_is_named() {
+        let mut mesh = grid(2);
+        mesh.uvs[4] = mesh.uvs[0];
+        let folded = checked(mesh);
+        assert!(matches!(folded, Err(Error::FoldedMapUvs { triangle: 0, .. })), "{folded:?}");
+    }
+}
