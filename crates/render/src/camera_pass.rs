@@ -6,12 +6,12 @@ use glam::Vec3;
 
 use crate::{
     Error, Film, LayerImage,
-    energy_map::EnergyMaps,
     features::{Features, Pipelines},
     film::filter_inverse_cdf,
     gpu::{Binding, Gpu, Purpose, wide},
     layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
+    map_sums::EnergyMaps,
     random::combine,
 };
 
@@ -29,9 +29,12 @@ const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower wid
 const HALVES: Purpose =
     Purpose { what: "every second sample of the picture's pixels", remedy: "lower width or height, or state samples" };
 const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
-const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
-/// Paths along each side of the picture that note what they see.
-const SIGHTINGS_SIDE: u32 = 128;
+const SIGHTINGS: Purpose =
+    Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false and map_size" };
+/// Paths along each side of the picture that note what they see, multiples of [`TILE_SIZE`]: at least, at most.
+const SIGHTINGS_SIDES: std::ops::RangeInclusive<u32> = 128..=512;
+/// Pixels along each axis for each of them.
+const PIXELS_PER_SIGHTING: u32 = 4;
 /// The stream of these paths' seeds.
 const SIGHTINGS_SEED_STREAM: u32 = 4;
 /// Paths along each side of the picture, and samples of each, that tell how much the light in the maps changes.
@@ -90,7 +93,16 @@ pub(crate) struct Samples {
     pub halves: wgpu::Buffer,
     layers: LayerSums,
     params_group: wgpu::BindGroup,
-    outputs_group: wgpu::BindGroup,
+    /// None until there are maps.
+    outputs_group: Option<wgpu::BindGroup>,
+}
+
+/// What camera paths see of the energy maps.
+#[derive(Debug, Default)]
+pub(crate) struct Sightings {
+    pub list: Vec<Sighting>,
+    /// Pixels for each.
+    pub pixels: f64,
 }
 
 impl Samples {
@@ -100,7 +112,6 @@ impl Samples {
         scene: &Scene,
         lights: &Lights,
         features: Features,
-        maps: &EnergyMaps,
     ) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let path_params = gpu.uniform::<PathParams>("camera paths");
@@ -108,13 +119,12 @@ impl Samples {
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         let halves = gpu.zeroed(HALVES, if features.has_halves() { 16 * pixels } else { 0 })?;
         let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
-        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
             camera: camera_of(scene),
             paths: paths_of(scene, lights),
             params_group: params_group(gpu, pass, [&path_params, &camera_params], &[])?,
-            outputs_group: pass.outputs_group(gpu, maps, &film, &layers, &no_sightings, &halves),
+            outputs_group: None,
             path_params,
             camera_params,
             film,
@@ -123,7 +133,14 @@ impl Samples {
         })
     }
 
-    /// What camera paths spread over the picture see of the energy maps, which are empty yet. Blocks.
+    /// Lets samples read these maps from now on.
+    pub fn show(&mut self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> Result<(), Error> {
+        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        self.outputs_group = Some(pass.outputs_group(gpu, maps, &self.film, &self.layers, &no_sightings, &self.halves));
+        Ok(())
+    }
+
+    /// What camera paths spread over the picture see of the energy maps, which are `empty` yet. Blocks.
     pub fn sightings(
         &self,
         gpu: &Gpu,
@@ -131,25 +148,30 @@ impl Samples {
         features: Features,
         scene_group: &wgpu::BindGroup,
         settings: &RenderSettings,
-        maps: &EnergyMaps,
-    ) -> Result<Vec<Sighting>, Error> {
-        let camera = CameraParams { width: SIGHTINGS_SIDE, height: SIGHTINGS_SIDE, ..self.camera };
+        empty: &EnergyMaps,
+    ) -> Result<Sightings, Error> {
+        let [width, height] = [settings.width, settings.height].map(|pixels| {
+            let side = pixels.div_ceil(PIXELS_PER_SIGHTING).next_multiple_of(TILE_SIZE);
+            side.clamp(*SIGHTINGS_SIDES.start(), *SIGHTINGS_SIDES.end())
+        });
+        let camera = CameraParams { width, height, ..self.camera };
         let seen_paths = PathParams {
             max_bounces: settings.max_bounces.min(1),
             seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
             ..self.paths
         };
-        let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
+        let paths = u64::from(width * height);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
         let no_halves = gpu.zeroed(HALVES, 0)?;
-        let outputs = pass.outputs_group(gpu, maps, &film, &no_layers, &sightings, &no_halves);
+        let outputs = pass.outputs_group(gpu, empty, &film, &no_layers, &sightings, &no_halves);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         self.write_params(gpu, &camera, &seen_paths);
-        let tiles = SIGHTINGS_SIDE / TILE_SIZE;
-        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
-        gpu.read(&sightings, 0..paths)
+        let groups = [width, height].map(|side| side / TILE_SIZE);
+        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], groups);
+        let pixels = f64::from(settings.width) * f64::from(settings.height) / paths as f64;
+        Ok(Sightings { list: gpu.read(&sightings, 0..paths)?, pixels })
     }
 
     /// A few samples of a small picture, by the maps as they are: always the same paths, so that two probes differ by what has changed in
@@ -204,8 +226,9 @@ impl Samples {
 
     /// Submits a further sample of every pixel.
     pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup) {
+        let Some(outputs) = &self.outputs_group else { return };
         self.write_params(gpu, &self.camera, &self.paths);
-        let groups = [scene_group, &self.params_group, &self.outputs_group];
+        let groups = [scene_group, &self.params_group, outputs];
         gpu.dispatch(&self.pipeline, &groups, self.size().map(|pixels| pixels.div_ceil(TILE_SIZE)));
     }
 
@@ -218,6 +241,7 @@ impl Samples {
         tiles: &[u32],
         count: u32,
     ) -> Result<u64, Error> {
+        let Some(outputs) = &self.outputs_group else { return Ok(0) };
         let [width, height] = self.size();
         let columns = width.div_ceil(TILE_SIZE);
         let places: Vec<u32> = tiles.iter().map(|tile| (tile % columns) | ((tile / columns) << 16)).collect();
@@ -229,7 +253,7 @@ impl Samples {
         // As wide as the kernel takes a row of the list to be.
         let size = [columns, camera.tile_count.div_ceil(columns)];
         for _ in 0..count {
-            gpu.dispatch(&self.pipeline, &[scene_group, &params_group, &self.outputs_group], size);
+            gpu.dispatch(&self.pipeline, &[scene_group, &params_group, outputs], size);
         }
         Ok(pixels)
     }
