@@ -75,7 +75,7 @@ fn load(arguments: &BakeArguments, progress: Progress) -> Result<LoadedScene, Er
         scene.output.layers.clear();
     }
     let settings = &mut scene.settings;
-    settings.photons = arguments.photons.unwrap_or(settings.photons);
+    settings.photons = arguments.photons.or(settings.photons);
     settings.guiding = false;
     // Nothing is rendered; the smallest picture takes no memory.
     (settings.width, settings.height) = (1, 1);
