@@ -87,10 +87,11 @@ fn sample_pixels(
     follow(&path);
     let index = path.pixel;
     add_to_squares(index, film.pixels[index], path.radiance);
-    film.pixels[index] += vec4<f32>(path.radiance, 1.0);
-    if has_halves && (path.sample & 1u) != 0u {
-        halves[index] += vec4<f32>(path.radiance, 1.0);
+    if has_halves && (path.sample & (path.sample - 1u)) == 0u {
+        // Whole powers of two of the sequence's points are spread evenly.
+        halves[index] = film.pixels[index];
     }
+    film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {
         path.sighting.radiance = dot(path.radiance, vec3<f32>(1.0 / 3.0));
         sightings[index] = path.sighting;

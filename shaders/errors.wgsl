@@ -1,4 +1,4 @@
-// How exact the picture is: of each tile, what two halves of its samples differ by.
+// How exact the picture is: of each tile, what its first samples differ by from its later ones.
 
 import package::layout::error_pass::{error_params, sampled_halves, sampled_pixels, tile_errors, TileError};
 
@@ -13,14 +13,14 @@ var<workgroup> radiances: array<f32, TILE_PIXELS>;
 var<workgroup> samples: array<u32, TILE_PIXELS>;
 var<workgroup> pixels: array<u32, TILE_PIXELS>;
 
-/// The squared error of a pixel's mean, relative to its square; mean of the channels. Of two means of independent samples, half their difference
-/// deviates as much as their mean.
-fn squared_error(all: vec4<f32>, half: vec4<f32>) -> f32 {
-    let others = all - half;
-    if half.w < 1.0 || others.w < 1.0 {
+/// The squared error of a pixel's mean, relative to its square; mean of the channels. Means of n₁ and n₂ independent samples differ by
+/// σ²(1/n₁ + 1/n₂) in the mean square, and that of all has the variance σ²/(n₁ + n₂).
+fn squared_error(all: vec4<f32>, first: vec4<f32>) -> f32 {
+    let later = all - first;
+    if first.w < 1.0 || later.w < 1.0 {
         return 1.0;
     }
-    let difference = 0.5 * (half.xyz / half.w - others.xyz / others.w);
+    let difference = (first.xyz / first.w - later.xyz / later.w) * sqrt(first.w * later.w) / all.w;
     let mean = all.xyz / all.w;
     let floor = DARKNESS * error_params.mean_radiance * error_params.mean_radiance;
     let relative = min(difference * difference / max(mean * mean + floor, vec3<f32>(1e-30)), vec3<f32>(1.0));

@@ -27,7 +27,7 @@ struct TileError {
 @group(0) @binding(0) var<uniform> error_params: ErrorParams;
 /// The camera pass's film: four words of counters, then the pixels.
 @group(0) @binding(1) var<storage, read> sampled_pixels: array<vec4<f32>>;
-/// For each pixel the sum of the radiance of every second sample, W/(m² sr), and their number.
+/// For each pixel the sum of the radiance of its first samples, W/(m² sr), and their number: the last power of two before all.
 @group(0) @binding(2) var<storage, read> sampled_halves: array<vec4<f32>>;
 /// Row by row from the top left.
 @group(0) @binding(3) var<storage, read_write> tile_errors: array<TileError>;

@@ -33,5 +33,5 @@ override has_light_layers: bool = false;
 override has_data_layers: bool = false;
 /// Light groups that are kept apart; 0 where none are.
 override light_group_count: u32 = 0u;
-/// Whether every second sample is also summed by itself, for an estimate of the error.
+/// Whether the sum of the first half of the samples is kept, for an estimate of the error.
 override has_halves: bool = false;

@@ -27,7 +27,7 @@ pub(crate) const PATH_OUTPUTS: [Binding; 6] = [
 ];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
 const HALVES: Purpose =
-    Purpose { what: "every second sample of the picture's pixels", remedy: "lower width or height, or state samples" };
+    Purpose { what: "the first samples of the picture's pixels", remedy: "lower width or height, or state samples" };
 const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
 const SIGHTINGS: Purpose =
     Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false and map_size" };
@@ -89,7 +89,7 @@ pub(crate) struct Samples {
     path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
-    /// For each pixel the sum of every second sample; an entry without use where the scene states how many samples there are.
+    /// For each pixel the sum of its first samples; an entry without use where the scene states how many samples there are.
     pub halves: wgpu::Buffer,
     layers: LayerSums,
     params_group: wgpu::BindGroup,

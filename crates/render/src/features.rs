@@ -46,7 +46,7 @@ pub(crate) struct Features {
     data_layers: bool,
     /// Light groups that are kept apart.
     light_groups: u32,
-    /// Every second sample summed by itself.
+    /// The sum of the first half of the samples kept.
     halves: bool,
 }
 
@@ -75,7 +75,7 @@ impl Features {
         }
     }
 
-    /// Whether every second sample is summed by itself, too.
+    /// Whether the sum of the first half of the samples is kept.
     pub fn has_halves(self) -> bool {
         self.halves
     }

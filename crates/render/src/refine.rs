@@ -249,20 +249,14 @@ impl Course {
         self.listed.clear();
         for (tile, (error, found)) in errors.guarded().into_iter().zip(&errors.tiles).enumerate() {
             if error > allowed && found.samples < MOST_SAMPLES {
-                self.listed.push((tile as u32, missing_samples(found.samples, error / allowed)));
+                // Twice as many: whole powers of two of the sequence's points are spread evenly, and the two halves are compared.
+                self.listed.push((tile as u32, found.samples));
             }
         }
         if self.listed.len() <= self.tile_count / TILES_FOR_EACH_MISS {
             self.stage = Stage::Done;
         }
     }
-}
-
-/// How many samples to add to some whose squared error is so many times what is allowed: a power of two, for few different numbers and even
-/// halves, and at most as many as there are, for the error is an estimate.
-fn missing_samples(samples: u32, excess: f32) -> u32 {
-    let wanted = (samples as f32 * (excess - 1.0)).min(samples as f32);
-    1 << (wanted as u32).max(2).ilog2()
 }
 
 /// Pixels whose light comes from the maps to a part that is worth looking at, by a picture without and one with photons.
@@ -367,10 +361,10 @@ mod tests {
         assert_eq!(course.next_step(), Step::Estimate);
         course.note_errors(&errors(&[(0.0, 4), (0.0, 4), (0.0, 4), (0.2, 4)]));
         // The third is doubted for its neighbour's sake.
-        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![2, 3], count: 2 });
-        course.note_tile_samples(2);
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![2, 3], count: 4 });
+        course.note_tile_samples(4);
         assert_eq!(course.next_step(), Step::Estimate);
-        course.note_errors(&errors(&[(0.0, 4), (0.0, 4), (0.0, 6), (0.004, 6)]));
+        course.note_errors(&errors(&[(0.0, 4), (0.0, 4), (0.0, 8), (0.004, 8)]));
         assert_eq!(course.next_step(), Step::Rest);
         assert!((course.refinement(0.0).error.unwrap() - 0.001f64.sqrt()).abs() < 1e-6);
     }
@@ -380,7 +374,7 @@ mod tests {
         let mut course = Course::new(&settings(Some(0), None), SUPPLY);
         course.note_samples(FIRST_SAMPLES);
         course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, 4)]));
-        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![1], count: 2 });
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![1], count: 4 });
         course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, MOST_SAMPLES)]));
         assert_eq!(course.next_step(), Step::Rest);
     }

@@ -51,7 +51,7 @@ fn every_kind_of_place_can_be_set() {
     ])
     .unwrap()
     .scene;
-    assert_eq!(scene.settings.samples, 64);
+    assert_eq!(scene.settings.samples, Some(64));
     assert_eq!((scene.camera.position, scene.camera.look_at), (vec3(0.0, 1.0, 2.0), vec3(0.0, 0.25, 0.0)));
     assert!(matches!(scene.materials[0].kind, MaterialKind::Dielectric { ior: 1.9, .. }));
     let albedo = vec3(0.1, 0.2, 0.3);
