@@ -28,8 +28,8 @@ const FIRST_SAMPLES: u32 = 4;
 const PICTURES_AT_ONCE: usize = 2;
 /// The most samples that a pixel takes of the renderer's own choice.
 const MOST_SAMPLES: u32 = 4096;
-/// One of so many tiles may miss the target: single bright paths keep some from it for long.
-const TILES_FOR_EACH_MISS: usize = 256;
+/// One of so many tiles may miss the target, and one in any picture: single bright paths keep some from it for long.
+const TILES_FOR_EACH_MISS: usize = 128;
 
 /// What a render works at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -253,7 +253,7 @@ impl Course {
                 self.listed.push((tile as u32, found.samples));
             }
         }
-        if self.listed.len() <= self.tile_count / TILES_FOR_EACH_MISS {
+        if self.listed.len() <= (self.tile_count / TILES_FOR_EACH_MISS).max(1) {
             self.stage = Stage::Done;
         }
     }
@@ -373,9 +373,9 @@ mod tests {
     fn tiles_that_never_settle_end_at_the_most_samples() {
         let mut course = Course::new(&settings(Some(0), None), SUPPLY);
         course.note_samples(FIRST_SAMPLES);
-        course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, 4)]));
-        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![1], count: 4 });
-        course.note_errors(&errors(&[(1.0, MOST_SAMPLES), (0.0, MOST_SAMPLES)]));
+        course.note_errors(&errors(&[(0.0, 4), (1.0, MOST_SAMPLES), (0.0, 4)]));
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![0, 2], count: 3 });
+        course.note_errors(&errors(&[(0.0, 4), (1.0, MOST_SAMPLES), (0.0, MOST_SAMPLES)]));
         assert_eq!(course.next_step(), Step::Rest);
     }
 
