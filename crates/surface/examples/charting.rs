@@ -4,7 +4,7 @@
 //! cargo run --release -p diacaustic-surface --example charting -- SHAPE MAP_SIZE [FOLDER]
 //! ```
 //!
-//! SHAPE is `sphere`, `knot`, `room`, `teapot`, `scanned`, `rough`, or a number of triangles of a scanned sphere.
+//! SHAPE is `sphere`, `knot`, `room`, `teapot`, `scanned`, `rough`, `fan`, `screw`, or a number of triangles of a scanned sphere.
 
 #[path = "../tests/shapes/mod.rs"]
 mod shapes;
@@ -21,6 +21,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mesh = match shape.as_str() {
         "sphere" => Mesh::sphere(Vec3::ZERO, 1.0, 6),
         "knot" => shapes::torus_knot(600, 32),
+        "fan" => shapes::fan(1_000_000, 1),
+        "screw" => shapes::screw(20_000),
         "room" => shapes::l_room(),
         "teapot" => shapes::teapot(),
         "scanned" => shapes::scanned(180, 0.5),

@@ -252,7 +252,9 @@ fn nothing_overlaps() {
         ("torus knot", shapes::torus_knot(300, 16), 700),
         ("room", shapes::l_room(), 200),
         ("teapot", shapes::teapot(), 1500),
-        ("screw", screw(40), 400),
+        ("screw", shapes::screw(40), 400),
+        ("fan", shapes::fan(1500, 1), 200),
+        ("fan that goes around twice", shapes::fan(300, 2), 200),
     ];
     for (name, mesh, map_size) in shapes {
         let object = shapes::object(mesh);
@@ -261,21 +263,6 @@ fn nothing_overlaps() {
         check_layout(&object, &layout);
         check_plane(&object, &layout);
     }
-}
-
-/// A helical ramp, whose turns lie one above the other and face the same way.
-fn screw(turns: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    for step in 0..=16 * turns {
-        let angle = f64::from(step) * std::f64::consts::TAU / 16.0;
-        for radius in [0.5, 1.0] {
-            mesh.positions.push(DVec3::new(radius * angle.cos(), 0.02 * angle, -radius * angle.sin()).as_vec3());
-        }
-    }
-    for k in (0..2 * 16 * turns).step_by(2) {
-        mesh.triangles.extend([[k, k + 1, k + 3], [k, k + 3, k + 2]]);
-    }
-    mesh
 }
 
 #[test]
@@ -299,7 +286,7 @@ fn front_and_back_of_a_thin_plate_stay_apart() {
 
 #[test]
 fn open_surfaces_have_two_layers() {
-    assert_eq!(MapLayout::new(&shapes::object(screw(1)), 64).layers, 2);
+    assert_eq!(MapLayout::new(&shapes::object(shapes::screw(1)), 64).layers, 2);
     assert_eq!(MapLayout::new(&shapes::object(shapes::l_room()), 64).layers, 1);
 }
 

@@ -40,9 +40,7 @@ impl Atlas {
             patches_of.iter().flat_map(|&patch| patches.triangles(patch).iter().copied()).collect()
         };
         let members: Vec<Vec<u32>> = used.iter().map(|chart| triangles(&chart.patches)).collect();
-        let frame = |(axis, members): (DVec3, &Vec<u32>)| {
-            Frame::tight(axis, members.iter().flat_map(|&triangle| facets.corners(triangle)))
-        };
+        let frame = |(axis, members): (DVec3, &Vec<u32>)| Frame::tight(axis, facets.corners_with_area(members));
         let frames: Vec<Frame> = used.par_iter().map(|chart| chart.axis).zip(&members).map(frame).collect();
         let (charts, cells) = share_cells(facets, frames, members, texel);
         let mut chart_of = vec![0; facets.mesh.triangles.len()];

@@ -51,9 +51,7 @@ pub(super) fn share_cells(
         let axes = [DVec3::X, DVec3::Y, DVec3::Z];
         let (u, v) = (axes[(way / 2 + 1) % 3], axes[(way / 2 + 2) % 3]);
         let (mut cell, mut area) = (Vec::new(), 0.0);
-        let frame = |cell: &[u32]| {
-            Frame::shrunk(u, v, cell.iter().flat_map(|&t| facets.corners(t)), (1.0 - 2.0 * MARGIN) * texel)
-        };
+        let frame = |cell: &[u32]| Frame::shrunk(u, v, facets.corners_with_area(cell), (1.0 - 2.0 * MARGIN) * texel);
         for sharer in sharers {
             cell.extend(sharer.triangles);
             area += sharer.area;

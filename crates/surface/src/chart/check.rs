@@ -1,9 +1,10 @@
 //! Checks that a chart does not overlap in its projection.
 
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
 use super::{
-    facets::Facets,
+    facets::{Facets, NONE},
     growing::Charts,
     overlap::{FlatTriangles, overlap_depth},
     patches::Patches,
@@ -12,12 +13,20 @@ use super::{
 /// Texels of height between which surfaces of small triangles lie one behind the other, and are not just rough.
 const ROUGHNESS: f64 = 4.0;
 
+/// How much more area than its box a chart may have before it is halved unseen.
+const MOST_COVER: f64 = 1.5;
+/// Boxes of triangles over a place, in the mean, from which on it takes too long to compare triangles with all that are near: in fans of
+/// slivers.
+const MANY_BOXES: f64 = 64.0;
+
 /// What a check of a chart found.
-pub(super) struct Verdict {
-    /// Patches that the chart has to give up.
-    pub removed: Vec<u32>,
-    /// Whether the rest is known not to overlap.
-    pub is_settled: bool,
+pub(super) enum Verdict {
+    /// No overlap.
+    Flat,
+    /// Patches without which there is none.
+    Without(Vec<u32>),
+    /// So much overlap, such as in the turns of a screw, that its halves are checked anew.
+    Halves,
 }
 
 /// Checks one chart.
@@ -28,30 +37,30 @@ pub(super) struct Verdict {
 pub(super) fn check(facets: &Facets<'_>, patches: &Patches, charts: &Charts, chart: u32, texel: f64) -> Verdict {
     let own = &charts.charts[chart as usize].patches;
     if own.len() < 2 {
-        return Verdict { removed: Vec::new(), is_settled: true };
+        return Verdict::Flat;
     }
     let flat = FlatChart::new(facets, patches, charts, chart, texel);
-    let is_at_border = |k: usize| {
-        let beyond = facets.neighbours[flat.triangles[k] as usize];
-        beyond.iter().any(|&next| {
-            next == super::facets::NONE || {
-                let patch = patches.of[next as usize];
-                charts.of[patch as usize] != chart || patches.triangles(patch).len() > 1
-            }
-        })
+    if flat.cover > MOST_COVER {
+        return Verdict::Halves;
+    }
+    let is_at_border = |triangle: u32, edge: usize| {
+        let beyond = facets.neighbours[triangle as usize][edge];
+        beyond == NONE || {
+            let patch = patches.of[beyond as usize];
+            charts.of[patch as usize] != chart || patches.triangles(patch).len() > 1
+        }
     };
-    let overlaps = (0..flat.triangles.len())
-        .filter(|&k| flat.is_looked_at(k) && (!flat.is_single[k] || is_at_border(k)))
-        .any(|k| flat.flat.any_near(k, |other| flat.overlap(k, other)));
-    if !overlaps {
-        return Verdict { removed: Vec::new(), is_settled: true };
+    if !flat.overlaps_at_border(is_at_border) && !flat.has_layers() {
+        return Verdict::Flat;
+    }
+    if flat.boxes > MANY_BOXES {
+        return Verdict::Halves;
     }
     let removed = flat.latecomers(own.len());
     if 2 * removed.len() > own.len() {
-        // Too much overlaps, such as the turns of a screw: halves are checked anew.
-        return Verdict { removed: own[own.len().div_ceil(2)..].to_vec(), is_settled: false };
+        return Verdict::Halves;
     }
-    Verdict { removed: removed.into_iter().map(|place| own[place]).collect(), is_settled: true }
+    Verdict::Without(removed.into_iter().map(|place| own[place]).collect())
 }
 
 /// A chart's triangles with an area, laid flat.
@@ -69,6 +78,10 @@ struct FlatChart {
     normals: Vec<DVec3>,
     tolerance: f64,
     roughness: f64,
+    /// The triangles' area in that of the box around all of them.
+    cover: f64,
+    /// The area of the boxes around each.
+    boxes: f64,
 }
 
 impl FlatChart {
@@ -88,8 +101,12 @@ impl FlatChart {
         let corners = |triangle: u32| facets.corners(triangle).map(turn);
         let middle = |&triangle: &u32| corners(triangle).into_iter().sum::<DVec3>() / 3.0;
         let normal = |&triangle: &u32| turn(facets.double_areas[triangle as usize].as_dvec3().normalize_or_zero());
+        let flat: Vec<[DVec2; 3]> = triangles.iter().map(|&t| corners(t).map(|p| p.truncate())).collect();
+        let (cover, boxes) = shares_of_box(&flat);
         Self {
-            flat: FlatTriangles::new(triangles.iter().map(|&t| corners(t).map(|p| p.truncate())).collect()),
+            flat: FlatTriangles::new(flat),
+            cover,
+            boxes,
             middles: triangles.iter().map(middle).collect(),
             normals: triangles.iter().map(normal).collect(),
             triangles,
@@ -98,6 +115,34 @@ impl FlatChart {
             tolerance: facets.rounding,
             roughness: ROUGHNESS * texel,
         }
+    }
+
+    /// Whether triangles that are patches of their own overlap, one of them at the border.
+    ///
+    /// How often places beside an edge of the border are covered changes only where the border touches that edge.
+    fn overlaps_at_border(&self, is_at_border: impl Fn(u32, usize) -> bool) -> bool {
+        let edges =
+            (0..self.triangles.len()).filter(|&k| self.is_single[k]).flat_map(|k| [0, 1, 2].map(|edge| (k, edge)));
+        let border: Vec<(usize, usize)> = edges.filter(|&(k, edge)| is_at_border(self.triangles[k], edge)).collect();
+        let ends = |(k, edge): (usize, usize)| [self.flat.corners[k][edge], self.flat.corners[k][(edge + 1) % 3]];
+        let outline = FlatTriangles::new(border.iter().map(|&at| ends(at)).map(|[a, b]| [a, b, b]).collect());
+        border.par_iter().enumerate().any(|(number, &at)| {
+            let (k, [a, b]) = (at.0, ends(at));
+            let touches = |other: usize| touch([a, b], ends(border[other]), self.tolerance);
+            let beside = 0.5 * (a + b) + (b - a).perp().normalize_or_zero() * 4.0 * self.tolerance;
+            let covers = |other: usize| other != k && reaches(&self.flat.corners[other], beside, self.tolerance);
+            let may_overlap = outline.any_near(number, touches) || self.flat.any_in(beside, beside, covers);
+            may_overlap && (self.boxes > MANY_BOXES || self.flat.any_near(k, |other| self.overlap(k, other)))
+        })
+    }
+
+    /// Whether something lies far behind one of the rough patches.
+    fn has_layers(&self) -> bool {
+        let rough = |k: &usize| self.is_looked_at(*k) && !self.is_single[*k];
+        (0..self.triangles.len())
+            .into_par_iter()
+            .filter(rough)
+            .any(|k| self.flat.any_near(k, |other| self.overlap(k, other)))
     }
 
     /// Whether a triangle is the first of its patch.
@@ -139,4 +184,46 @@ impl FlatChart {
         }
         removed
     }
+}
+
+/// The area of triangles, and that of the boxes around each, in shares of the box around all.
+fn shares_of_box(triangles: &[[DVec2; 3]]) -> (f64, f64) {
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let (mut area, mut boxes) = (0.0, 0.0);
+    for [a, b, c] in triangles {
+        let (own_low, own_high) = (a.min(*b).min(*c), a.max(*b).max(*c));
+        (low, high) = (low.min(own_low), high.max(own_high));
+        area += 0.5 * (*b - *a).perp_dot(*c - *a).abs();
+        boxes += (own_high - own_low).element_product();
+    }
+    let whole = (high - low).element_product().max(f64::MIN_POSITIVE);
+    (area / whole, boxes / whole)
+}
+
+/// Whether two edges come within a distance of each other, other than at an end that they have in common.
+fn touch(one: [DVec2; 2], other: [DVec2; 2], distance: f64) -> bool {
+    let near = |p: DVec2, [a, b]: [DVec2; 2]| {
+        let along = b - a;
+        let t = ((p - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        p.distance(a + along * t) <= distance
+    };
+    let is_shared = |p: DVec2, edge: [DVec2; 2]| edge.contains(&p);
+    let ends_touch =
+        |edge: [DVec2; 2], beside: [DVec2; 2]| edge.into_iter().any(|p| !is_shared(p, beside) && near(p, beside));
+    let side = |[a, b]: [DVec2; 2], p: DVec2| (b - a).perp_dot(p - a);
+    let parts = |edge: [DVec2; 2], [a, b]: [DVec2; 2]| side(edge, a) * side(edge, b) < 0.0;
+    one == other
+        || one == [other[1], other[0]]
+        || ends_touch(one, other)
+        || ends_touch(other, one)
+        || (parts(one, other) && parts(other, one))
+}
+
+/// Whether a place is in a triangle or within a distance of the lines along its edges.
+fn reaches(triangle: &[DVec2; 3], place: DVec2, distance: f64) -> bool {
+    let turn = (triangle[1] - triangle[0]).perp_dot(triangle[2] - triangle[0]).signum();
+    (0..3).all(|k| {
+        let along = (triangle[(k + 1) % 3] - triangle[k]).normalize_or_zero();
+        turn * along.perp_dot(place - triangle[k]) >= -distance
+    })
 }

@@ -57,6 +57,11 @@ impl<'a> Facets<'a> {
         self.mesh.triangles[triangle as usize].map(|vertex| self.points[vertex as usize].as_dvec3())
     }
 
+    /// The corners of those of some triangles that have an area, units.
+    pub(super) fn corners_with_area(&self, triangles: &[u32]) -> impl Iterator<Item = DVec3> {
+        triangles.iter().filter(|&&triangle| self.area(triangle) > 0.0).flat_map(|&triangle| self.corners(triangle))
+    }
+
     /// A triangle's area, units².
     pub(super) fn area(&self, triangle: u32) -> f64 {
         0.5 * self.double_areas[triangle as usize].as_dvec3().length()

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
-    check::check,
+    check::{Verdict, check},
     facets::{Facets, NONE},
     patches::Patches,
 };
@@ -60,10 +60,13 @@ pub(super) fn grow_charts(facets: &Facets<'_>, patches: &Patches, texel: f64) ->
             unchecked.par_iter().map(|&chart| check(facets, patches, &grown, chart, texel)).collect();
         let checked = std::mem::take(&mut unchecked);
         for (chart, verdict) in checked.into_iter().zip(verdicts) {
-            grown.remove(chart, &verdict.removed);
-            waiting.extend(verdict.removed);
-            if !verdict.is_settled {
-                unchecked.push(chart);
+            match verdict {
+                Verdict::Flat => {}
+                Verdict::Without(removed) => {
+                    grown.remove(chart, &removed);
+                    waiting.extend(removed);
+                }
+                Verdict::Halves => unchecked.extend([chart, grown.halve(chart)]),
             }
         }
     }
@@ -152,13 +155,21 @@ impl Charts {
         longest_first.into_iter().map(|(_, other)| other).find(|&other| faces_alike(other))
     }
 
+    /// Makes a chart of the later half of another's patches; returns its number.
+    fn halve(&mut self, chart: u32) -> u32 {
+        let number = self.charts.len() as u32;
+        let Chart { axis, patches } = &mut self.charts[chart as usize];
+        let half = Chart { axis: *axis, patches: patches.split_off(patches.len().div_ceil(2)) };
+        half.patches.iter().for_each(|&patch| self.of[patch as usize] = number);
+        self.charts.push(half);
+        number
+    }
+
     /// Takes patches out of a chart.
     fn remove(&mut self, chart: u32, removed: &[u32]) {
-        if !removed.is_empty() {
-            removed.iter().for_each(|&patch| self.of[patch as usize] = NONE);
-            let of = &self.of;
-            self.charts[chart as usize].patches.retain(|&patch| of[patch as usize] == chart);
-        }
+        removed.iter().for_each(|&patch| self.of[patch as usize] = NONE);
+        let of = &self.of;
+        self.charts[chart as usize].patches.retain(|&patch| of[patch as usize] == chart);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 use obvhs::{
     BvhBuildParams,
     aabb::Aabb,
@@ -24,20 +24,28 @@ impl FlatTriangles {
             v2: c.as_vec2().extend(0.0).into(),
         };
         let triangles: Vec<_> = corners.iter().map(flat).collect();
-        let bvh = build_bvh2_from_tris(&triangles, BvhBuildParams::very_fast_build(), &mut Duration::default());
+        let bvh = if triangles.is_empty() {
+            Bvh2::default()
+        } else {
+            build_bvh2_from_tris(&triangles, BvhBuildParams::very_fast_build(), &mut Duration::default())
+        };
         Self { corners, bvh }
     }
 
     /// Whether `found` holds for some triangle whose box meets that of a given one, other than itself.
     pub(super) fn any_near(&self, triangle: usize, mut found: impl FnMut(usize) -> bool) -> bool {
-        let [a, b, c] = self.corners[triangle].map(|p| p.as_vec2());
-        let corner = |p: glam::Vec2| Vec3::new(p.x, p.y, 0.0).into();
+        let [a, b, c] = self.corners[triangle];
+        self.any_in(a.min(b).min(c), a.max(b).max(c), |other| other != triangle && found(other))
+    }
+
+    /// Whether `found` holds for some triangle whose box meets a given one.
+    pub(super) fn any_in(&self, low: DVec2, high: DVec2, mut found: impl FnMut(usize) -> bool) -> bool {
+        let corner = |p: DVec2| p.as_vec2().extend(0.0).into();
         let mut any = false;
-        self.bvh.aabb_traverse(Aabb::new(corner(a.min(b).min(c)), corner(a.max(b).max(c))), |bvh, node| {
+        self.bvh.aabb_traverse(Aabb::new(corner(low), corner(high)), |bvh, node| {
             let node = &bvh.nodes[node as usize];
             let slots = node.first_index..node.first_index + node.prim_count;
-            let mut others = slots.map(|slot| bvh.primitive_indices[slot as usize] as usize);
-            any = others.any(|other| other != triangle && found(other));
+            any = slots.map(|slot| bvh.primitive_indices[slot as usize] as usize).any(&mut found);
             !any
         });
         any

@@ -107,6 +107,33 @@ pub fn scanned(bands: u32, noise: f64) -> Mesh {
     mesh
 }
 
+/// A disk of slivers around its middle that goes around some times, slowly rising.
+pub fn fan(slivers: u32, turns: u32) -> Mesh {
+    let mut mesh = Mesh { positions: vec![Vec3::ZERO], ..Mesh::default() };
+    for k in 0..slivers {
+        let angle = TAU * f64::from(k * turns) / f64::from(slivers);
+        mesh.positions.push(DVec3::new(angle.cos(), 1e-2 * angle, -angle.sin()).as_vec3());
+        let next = if k + 1 < slivers { k + 2 } else { 1 };
+        mesh.triangles.extend((turns == 1 || k + 1 < slivers).then_some([0, k + 1, next]));
+    }
+    mesh
+}
+
+/// A helical ramp, whose turns lie one above the other and face the same way.
+pub fn screw(turns: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for step in 0..=16 * turns {
+        let angle = f64::from(step) * TAU / 16.0;
+        for radius in [0.5, 1.0] {
+            mesh.positions.push(DVec3::new(radius * angle.cos(), 0.02 * angle, -radius * angle.sin()).as_vec3());
+        }
+    }
+    for k in (0..2 * 16 * turns).step_by(2) {
+        mesh.triangles.extend([[k, k + 1, k + 3], [k, k + 3, k + 2]]);
+    }
+    mesh
+}
+
 /// A number in [0, 1) that looks random (Wellons 2018).
 pub fn hashed(number: u32) -> f64 {
     let mut x = number.wrapping_add(0x9e37_79b9);
