@@ -4,8 +4,9 @@
     scripts/refine.py [--sizes 64,128,...] [--photons 1e5,...] [--plot FILE.png]      (pip install numpy OpenEXR matplotlib)
 
 Needs target/release/diacaustic and, beside the repository, the folder shared/reference with the meshes and pictures of an independent tracer;
-without them it says so and ends with status 0. Each map is read at the floor points of the pixels that the reference calls the caustic and that no
-direct light reaches, with 8 x 8 points a pixel, so that no camera noise is measured. The error is that of the reference's compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
+without them it says so and ends with status 0. Each map is read at the floor points of the brighter half of the caustic: pixels of at least the mean
+of those that the reference calls the caustic, which no direct light reaches, and which indirect light makes brighter by a per cent at most. There are 8 x 8
+points a pixel, so that no camera noise is measured. The error is that of the reference's compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
 """
 import argparse
 import pathlib
@@ -97,7 +98,8 @@ def errors(name, sizes, counts):
         folder = pathlib.Path(folder)
         run(path, "map_size = 64\nmax_bounces = 0", folder, 1000, 32, '["direct"]')
         direct = channel(folder / "picture.exr", "direct.G")
-        mask &= direct <= UMBRA * reference[mask].mean()
+        mean = reference[mask].mean()
+        mask &= (direct <= UMBRA * mean) & (reference >= mean)
         direct = direct[mask]
         u, v = (a.reshape(mask.shape[0], POINTS, mask.shape[1], POINTS).swapaxes(1, 2)[mask] for a in floor_points(scene))
         r = reference[mask]
