@@ -7,6 +7,7 @@ mod chart;
 mod error;
 mod light_surfaces;
 mod texel_area;
+mod tile;
 mod touching;
 mod triangles;
 
@@ -16,5 +17,6 @@ pub use chart::{MapLayout, check_map_uvs};
 pub use error::Error;
 pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use texel_area::texel_areas;
+pub use tile::{FINEST_LEVEL, MapSquare, MapTile, MapTiles};
 pub use touching::{RAY_OFFSET, separate_touching};
 pub use triangles::{WorldTriangle, world_triangles};
