@@ -369,12 +369,11 @@ prop_compose! {
         scale in prop::sample::select(vec![1e-6f32, 1.0, 1e6]),
         picks in prop::collection::vec(prop::array::uniform3(0usize..100), 1..60),
     ) -> Mesh {
-        let mut mesh = Mesh::default();
-        mesh.positions = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
-        mesh.positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
-        let count = mesh.positions.len();
-        mesh.triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
-        mesh
+        let mut positions: Vec<Vec3> = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
+        positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
+        let count = positions.len();
+        let triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
+        Mesh { positions, triangles, ..Mesh::default() }
     }
 }
 
