@@ -14,6 +14,7 @@ use crate::{
     aim::{Block, Emission, blocks},
     energy_map::EnergyMaps,
     features::{Features, Pipelines},
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     lights::{Emitter, Lights},
     pilot::{Pilot, PilotRound},
@@ -226,6 +227,15 @@ impl Photons {
             unguided_share: unguided_share(&self.lights, &flights),
             ..PilotReport::default()
         })
+    }
+
+    /// Adds what the photons depend on beside the scene: how they are aimed and guided.
+    pub fn add_to(&self, fingerprint: &mut Fingerprint) {
+        let none = Block { first: 0, count: 0, order: None };
+        let params: Vec<_> = self.lights.iter().map(|light| self.block_params(light, &none)).collect();
+        fingerprint.digest("how photons are emitted", &params);
+        let guides: Vec<_> = self.lights.iter().flat_map(|light| light.guide.records()).collect();
+        fingerprint.digest("how photons are guided", &guides);
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.

@@ -3,21 +3,24 @@
 use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::Scene;
-use diacaustic_shaders::QueryHit;
+use diacaustic_shaders::{CAMERA, PHOTONS, QueryHit, RESOLVE};
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
     Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
-    SceneReport, Statistics,
+    RenderState, SceneReport, Statistics,
     camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     energy_map::{EnergyMaps, ResolvePass},
+    features::Features,
+    fingerprint::{Difference, Fingerprint},
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
     photon_pass::{PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
+    render_state::SavedBuffer,
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
 };
@@ -57,6 +60,7 @@ struct OnDevice {
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
     buffers: SceneBuffers,
+    features: Features,
     maps: EnergyMaps,
     photons: Photons,
     samples: Samples,
@@ -64,6 +68,32 @@ struct OnDevice {
     sample_count: u32,
     /// Whether photons came since the sums last became irradiance.
     unresolved: bool,
+}
+
+impl OnDevice {
+    /// What photons and samples accumulate in, by name.
+    fn accumulated(&self) -> Vec<(&'static str, &wgpu::Buffer)> {
+        let of_photons = [("energy maps", &self.maps.sums), ("ledgers", &self.photons.ledger)];
+        of_photons.into_iter().chain(self.samples.accumulated()).collect()
+    }
+
+    /// What the bits of photons and samples depend on.
+    fn fingerprint(&self, adapter: &wgpu::AdapterInfo) -> Fingerprint {
+        let wgpu::AdapterInfo { name, driver, driver_info, .. } = adapter;
+        let mut fingerprint = Fingerprint::default();
+        fingerprint.say("version", env!("CARGO_PKG_VERSION"));
+        fingerprint.say("adapter", format!("{name} ({driver} {driver_info})"));
+        fingerprint.say("seed", self.scene.settings.seed);
+        for kernel in [PHOTONS, RESOLVE, CAMERA] {
+            fingerprint.digest(&format!("the kernel {}", kernel.name), kernel.source.as_bytes());
+        }
+        fingerprint.extend(&self.buffers.fingerprint);
+        fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
+        fingerprint.say("list of features", format!("{:?}", self.features));
+        self.photons.add_to(&mut fingerprint);
+        self.samples.add_to(&mut fingerprint);
+        fingerprint
+    }
 }
 
 impl Renderer {
@@ -159,6 +189,7 @@ impl Renderer {
             scene: scene.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
             buffers,
+            features: host.features,
             maps,
             photon_count: 0,
             sample_count: 0,
@@ -310,13 +341,76 @@ impl Renderer {
     /// If no scene is set.
     pub fn restart(&mut self) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        for buffer in [&on_device.maps.sums, &on_device.photons.ledger].into_iter().chain(on_device.samples.buffers()) {
+        for (_, buffer) in on_device.accumulated() {
             self.gpu.clear(buffer);
         }
         on_device.photon_count = 0;
         on_device.sample_count = 0;
         on_device.unresolved = true;
         Ok(())
+    }
+
+    /// Forgets all samples; the scene and its photons stay.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn restart_samples(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        for (_, buffer) in on_device.samples.accumulated() {
+            self.gpu.clear(buffer);
+        }
+        on_device.sample_count = 0;
+        Ok(())
+    }
+
+    /// Reads everything that photons and samples have left, to go on from it later, in another process too. Blocks until all submitted work
+    /// is done. The state takes as much memory on the host as the sums of maps, film and layers on the device.
+    ///
+    /// # Errors
+    /// If no scene is set or the device fails.
+    pub fn save_state(&self) -> Result<RenderState, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        let read = |(name, buffer): (&str, &wgpu::Buffer)| {
+            Ok(SavedBuffer { name: name.to_owned(), words: self.gpu.read(buffer, 0..buffer.size() / 4)? })
+        };
+        Ok(RenderState {
+            note: String::new(),
+            photons: on_device.photon_count,
+            samples: on_device.sample_count,
+            fingerprint: on_device.fingerprint(&self.gpu.device.adapter_info()),
+            buffers: on_device.accumulated().into_iter().map(read).collect::<Result<_, Error>>()?,
+        })
+    }
+
+    /// Puts a saved state in the place of all photons and samples so far. What follows is, to the bit, what would have followed where it was saved:
+    /// [`RenderState::photons`] and [`RenderState::samples`] tell with which to go on. Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set; if the state is of another scene, seed, version of this crate or adapter; or if the device fails. What was there
+    /// before then stays.
+    pub fn restore_state(&mut self, state: &RenderState) -> Result<(), Error> {
+        let adapter = self.gpu.device.adapter_info();
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        if let Some(Difference { name, first, second }) = state.fingerprint.difference(&on_device.fingerprint(&adapter))
+        {
+            return Err(Error::OtherState { what: name, saved: first, found: second });
+        }
+        let buffers = on_device.accumulated();
+        let shape = |name: &str, words: u64| (name.to_owned(), words);
+        let saved: Vec<_> = state.buffers.iter().map(|saved| shape(&saved.name, saved.words.len() as u64)).collect();
+        let wanted: Vec<_> = buffers.iter().map(|(name, buffer)| shape(name, buffer.size() / 4)).collect();
+        if saved != wanted {
+            return Err(Error::BadState("its buffers are not those of this scene".to_owned()));
+        }
+        self.gpu.wait()?;
+        for ((_, buffer), saved) in buffers.into_iter().zip(&state.buffers) {
+            self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&saved.words));
+        }
+        self.gpu.queue.submit([]);
+        on_device.photon_count = state.photons;
+        on_device.sample_count = state.samples;
+        on_device.unresolved = true;
+        self.gpu.wait()
     }
 
     /// Blocks until all submitted work is done.
