@@ -270,10 +270,58 @@ fn inspect_tells_what_a_scene_holds_without_a_device() {
         "glass: dielectric, index 1.5; casts light on",
         "plaster: diffuse; receives light",
         "lamp: sphere of radius 0.05 m, [35, 35, 35] W",
+        "floor: 32 × 32 texels, both sides",
+        "adapters: 0",
     ] {
         assert!(outcome.stdout.contains(text), "{text:?} is missing in: {}", outcome.stdout);
     }
-    assert_eq!(workplace.files(), ["scene.toml"]);
+    let bytes =
+        |outcome: &Outcome| outcome.stdout.split("on a device: ").nth(1).unwrap().split(',').next().unwrap().to_owned();
+    let set = workplace.render(&["--set", "render.width=99"]);
+    assert!(set.stderr.contains(&format!("; {} on the device", bytes(&outcome))), "{}", set.stderr);
+    let listed = workplace.run(&["inspect", "scene.toml"]);
+    assert!(!listed.stdout.contains("adapters: 0") && listed.stdout.contains("\n  0: "), "{}", listed.stdout);
+}
+
+#[test]
+fn adapters_and_memory_are_chosen() {
+    let workplace = Workplace::new(BALL);
+    workplace.run(&["scene.toml", "--adapter", "99"]).assert_refused(1, &["there is no GPU adapter 99; there are: 0 "]);
+    workplace.run(&["scene.toml", "--adapter", "abacus"]).assert_refused(1, &["contains \"abacus\"; there are: 0 "]);
+    workplace.render(&["--adapter", "0", "--device-memory", "1GiB"]);
+    workplace.run(&["scene.toml", "--device-memory", "100kB"]).assert_refused(
+        1,
+        &[
+            "the bounding volume hierarchy's nodes need ",
+            "of the 100000 that may be taken on the device",
+            "use fewer triangles",
+        ],
+    );
+    workplace.run(&["scene.toml", "--device-memory", "some"]).assert_refused(2, &["--device-memory", "512MiB"]);
+    // Room for maps of half the limit: they shrink where the scene leaves their size open.
+    let free = ["--set", "render={ width = 256, height = 256, samples = 1, photons = 1000 }", "--stats", "stats.json"];
+    let texels = |flags: &[&str]| {
+        workplace.render(&[&free[..], flags].concat());
+        workplace.json("stats.json")["maps"][0]["width"].as_u64().unwrap()
+    };
+    let (wide, narrow) = (texels(&[]), texels(&["--device-memory", "30MB"]));
+    assert!(narrow < wide, "{narrow} and {wide} texels");
+}
+
+#[test]
+fn shells_and_manuals_know_every_flag() {
+    let workplace = Workplace::new(BALL);
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let outcome = workplace.run(&["completions", shell]);
+        assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+        assert!(outcome.stdout.contains("inspect") && outcome.stdout.contains("time-limit"), "{shell}");
+    }
+    workplace.run(&["completions", "cmd"]).assert_refused(2, &["bash", "fish"]);
+    assert_eq!(workplace.run(&["man", "new/pages"]).status, Some(0));
+    let page = |name: &str| fs::read_to_string(workplace.path(&format!("new/pages/{name}"))).unwrap();
+    assert!(page("diacaustic.1").contains("Renders glass and the caustics"));
+    assert!(page("diacaustic-render.1").contains("energy\\-maps"));
+    workplace.run(&["man", "scene.toml"]).assert_refused(1, &["scene.toml: the manual cannot be written"]);
 }
 
 #[test]

@@ -25,6 +25,20 @@ pub enum Error {
         /// What would make it fit.
         remedy: &'static str,
     },
+    /// A scene needs more than [`RendererOptions::memory`](crate::RendererOptions::memory) allows.
+    #[error("{what} need {asked} bytes, and of the {limit} that may be taken on the device {left} are left: {remedy}")]
+    OverMemoryLimit {
+        /// What does not fit.
+        what: &'static str,
+        /// Bytes that it needs.
+        asked: u64,
+        /// Bytes that are left for it.
+        left: u64,
+        /// Bytes that are allowed in all.
+        limit: u64,
+        /// What would make it fit.
+        remedy: &'static str,
+    },
     /// The device's limits are lower than [`crate::Renderer::required_limits`].
     #[error("the device allows {found} for the limit {limit} and diacaustic needs {needed}")]
     DeviceTooSmall {

@@ -30,6 +30,9 @@ use crate::{
 pub struct RendererOptions {
     /// Bytes that the sums of all energy maps whose size the scene leaves open may take; what the device can bind if none.
     pub map_budget: Option<u64>,
+    /// Bytes that buffers and textures of a scene may take together, without what copies take for a moment; what the device gives if none. Maps
+    /// whose size the scene leaves open take half of it at most. While one scene replaces another, both are on the device.
+    pub memory: Option<u64>,
 }
 
 /// Dispatches that one call submits before it waits for them.
@@ -87,8 +90,8 @@ impl OnDevice {
         for kernel in [PHOTONS, RESOLVE, CAMERA] {
             fingerprint.digest(&format!("the kernel {}", kernel.name), kernel.source.as_bytes());
         }
-        fingerprint.extend(&self.buffers.fingerprint);
         fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
+        fingerprint.extend(&self.buffers.fingerprint);
         fingerprint.say("list of features", format!("{:?}", self.features));
         self.photons.add_to(&mut fingerprint);
         self.samples.add_to(&mut fingerprint);
@@ -108,24 +111,43 @@ impl Renderer {
     /// # Errors
     /// If the device's limits are too low, the adapter ends loops too early, or the device fails.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: &RendererOptions) -> Result<Self, Error> {
-        let gpu = Gpu { device: device.clone(), queue: queue.clone() };
+        let gpu = Gpu { device: device.clone(), queue: queue.clone(), limit: None };
         check_limits(&device.limits())?;
-        gpu.guarded(|| {
-            let loop_limit = LoopLimit::measure(&gpu)?;
-            let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
-            Ok(Self {
-                photon_pass: PhotonPass::new(&gpu, &scene_layout),
-                resolve_pass: ResolvePass::new(&gpu),
-                camera_pass: CameraPass::new(&gpu, &scene_layout),
-                display_pass: DisplayPass::new(&gpu),
-                query_pass: QueryPass::new(&gpu, &scene_layout),
-                gpu: gpu.clone(),
-                options: options.clone(),
-                loop_limit,
-                scene_layout,
-                scene: None,
-            })
-        })
+        gpu.guarded(|| Ok(Self::on(&gpu, options, LoopLimit::measure(&gpu)?)))
+    }
+
+    fn on(gpu: &Gpu, options: &RendererOptions, loop_limit: LoopLimit) -> Self {
+        let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
+        Self {
+            photon_pass: PhotonPass::new(gpu, &scene_layout),
+            resolve_pass: ResolvePass::new(gpu),
+            camera_pass: CameraPass::new(gpu, &scene_layout),
+            display_pass: DisplayPass::new(gpu),
+            query_pass: QueryPass::new(gpu, &scene_layout),
+            gpu: gpu.clone(),
+            options: options.clone(),
+            loop_limit,
+            scene_layout,
+            scene: None,
+        }
+    }
+
+    /// What [`Renderer::set_scene`] would report, found without a device: triangles, maps and bytes on one whose buffers may be of 2 GiB. There
+    /// is no pilot. Blocks while it builds the scene on the host.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_scene`].
+    pub fn dry_run(scene: &Scene, options: &RendererOptions) -> Result<SceneReport, Error> {
+        let largest = u64::from(u32::MAX / 2);
+        let required_limits = wgpu::Limits {
+            max_storage_buffer_binding_size: largest,
+            max_buffer_size: largest,
+            ..Self::required_limits()
+        };
+        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor { required_limits, ..Default::default() });
+        let mut unguided = scene.clone();
+        unguided.settings.guiding = false;
+        Self::on(&Gpu { device, queue, limit: None }, options, LoopLimit::NONE).set_scene(&unguided)
     }
 
     /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
@@ -139,7 +161,8 @@ impl Renderer {
         scene.validate()?;
         let limits = self.gpu.device.limits();
         let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let host = HostScene::build(scene, self.options.map_budget.unwrap_or(u64::MAX).min(bindable))?;
+        let half = self.options.memory.map_or(u64::MAX, |memory| memory / 2);
+        let host = HostScene::build(scene, self.options.map_budget.unwrap_or(u64::MAX).min(bindable).min(half))?;
         let (triangles, bvh_nodes) = (host.triangles, host.bvh.nodes.len());
         let (bvh_time, maps_time) = (host.bvh_time, host.maps_time);
         let lights = light_reports(scene, &host.lights);
@@ -161,7 +184,7 @@ impl Renderer {
 
     /// Sends a scene to the device, and flies the pilots if photons are guided.
     fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<(OnDevice, Option<PilotReport>), Error> {
-        let gpu = &self.gpu;
+        let gpu = &self.gpu.limited_to(self.options.memory);
         let buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
         let photons_of = PhotonScene {
             settings: &scene.settings,

@@ -1,13 +1,15 @@
 //! `diacaustic render`: from the scene to a picture.
 
 mod arguments;
+mod checkpoint;
 mod outputs;
 mod pictures;
+mod refresh;
 mod report;
 
 use std::{
     fmt,
-    path::Path,
+    path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
@@ -16,8 +18,10 @@ use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, wri
 
 pub use self::arguments::RenderArguments;
 use self::{
+    checkpoint::{Checkpoints, resume},
     outputs::Outputs,
     pictures::{NO_LAYERS, can_hold_layers, write_pictures},
+    refresh::Refresh,
     report::Report,
 };
 use crate::{
@@ -42,20 +46,33 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
     warn(progress, arguments, &mut loaded, &outputs);
     let times = Times { load: start.elapsed(), ..Times::default() };
 
-    let mut session = Session::open(progress, loaded, times)?;
+    let mut session = Session::open(&arguments.session, loaded, times)?;
+    let checkpoints = arguments.checkpoint.as_deref();
+    let checkpoints = checkpoints.map(|path| Checkpoints::new(path, arguments.every, &scene_arguments.scene));
+    if let Some(path) = &arguments.resume {
+        resume(&mut session, path)?;
+    }
+    session.engage(Refresh::new(&outputs.pictures));
+    checkpoints.iter().for_each(|checkpoints| session.engage(checkpoints.clone()));
     let deadline = arguments.time_limit.and_then(|limit| start.checked_add(limit));
     session.emit_photons(deadline)?;
     session.add_samples(deadline)?;
 
     let write_start = Instant::now();
     let maps = write(&session, &mut outputs)?;
+    if let Some(checkpoints) = &checkpoints {
+        checkpoints.write(&session)?;
+    }
     session.times.write = write_start.elapsed();
     session.times.total = start.elapsed();
     if let Some(path) = &outputs.statistics {
         write_report(&session, path, &scene_arguments.scene)?;
     }
     progress.say(Written { outputs: &outputs, maps, time: start.elapsed() });
-    Ok(())
+    match session.interruption.signal() {
+        Some(signal) => Err(Error::Interrupted { signal }),
+        None => Ok(()),
+    }
 }
 
 fn override_settings(scene: &mut Scene, arguments: &RenderArguments) {
@@ -80,13 +97,18 @@ fn warn(progress: Progress, arguments: &RenderArguments, loaded: &mut LoadedScen
 
 /// Writes pictures and energy maps; returns how many maps.
 fn write(session: &Session, outputs: &mut Outputs) -> Result<usize, Error> {
-    let film = session.renderer.film()?;
-    let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
-    write_pictures(&outputs.pictures, &picture, &session.renderer.layers()?, &display(&session.scene.output))?;
+    write_pictures_of(session, &outputs.pictures)?;
     match &mut outputs.energy_maps {
         Some(folder) => write_energy_maps(session, folder),
         None => Ok(0),
     }
+}
+
+/// Writes the picture so far.
+fn write_pictures_of(session: &Session, files: &[PathBuf]) -> Result<(), Error> {
+    let film = session.renderer.film()?;
+    let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
+    write_pictures(files, &picture, &session.renderer.layers()?, &display(&session.scene.output))
 }
 
 fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<usize, Error> {
@@ -109,6 +131,7 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
         counted: &session.renderer.statistics()?,
         times: session.times,
         time_limit_reached: session.time_limit_reached,
+        interrupted: session.interruption.signal().is_some(),
     };
     Ok(write_statistics(path, &report.statistics())?)
 }

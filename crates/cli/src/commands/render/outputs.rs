@@ -36,7 +36,7 @@ impl Outputs {
         for path in &pictures {
             Format::of(path)?;
         }
-        for path in pictures.iter().chain(&arguments.stats) {
+        for path in pictures.iter().chain(&arguments.stats).chain(&arguments.checkpoint) {
             if !named.insert(comparable(path)) {
                 return Err(Error::NamedTwice(path.clone()));
             }
@@ -99,6 +99,8 @@ mod tests {
             (&["--output", "a.png", "--output", "a.png"], 2),
             (&["--output", "a.png", "--stats", "a.png"], 2),
             (&["--stats", "a scene.toml"], 2),
+            (&["--checkpoint", "a scene.toml"], 2),
+            (&["--checkpoint", "missing/a.state"], 1),
         ] {
             let error = choose(folder.path(), flags, &[]).unwrap_err();
             assert_eq!(error.exit_status(), status, "{flags:?}: {error}");

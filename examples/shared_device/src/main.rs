@@ -1,0 +1,4 @@
+//! draft
+fn main() {
+    let _ = eframe::NativeOptions::default();
+}
