@@ -21,6 +21,9 @@ pub enum Error {
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
+    /// Frames are asked for, and the scene is glTF.
+    #[error("{}: --frames goes with a scene file (.toml) that has an [animation], and this is a glTF file", .0.display())]
+    FramesOfGltf(PathBuf),
     /// A value of a scene file is to be changed, and the scene is glTF.
     #[error(
         "{}: --set {path} goes with a scene file (.toml), and this is a glTF file; write one that names it: mesh = \"{}\"",
@@ -71,7 +74,7 @@ impl Error {
         use diacaustic::Error as Render;
         match self {
             Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) => 2,
-            Self::OverrideOfGltf { .. } | Self::Resume { .. } => 2,
+            Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } => 2,
             Self::Interrupted { signal } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,

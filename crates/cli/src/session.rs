@@ -82,13 +82,14 @@ pub(crate) trait Attendant {
 }
 
 impl Session {
-    /// Opens the device and sets the scene on it. `times` go on from what is measured so far.
+    /// Opens the device and sets the scene on it, which took `load` to read.
     ///
     /// # Errors
     /// If there is no device, or the scene cannot be rendered on it.
-    pub fn open(arguments: &SessionArguments, loaded: LoadedScene, mut times: Times) -> Result<Self, Error> {
+    pub fn open(arguments: &SessionArguments, loaded: LoadedScene, load: Duration) -> Result<Self, Error> {
         let progress = Progress::new(arguments.quiet);
         let LoadedScene { scene, warnings } = loaded;
+        let mut times = Times { load, ..Times::default() };
         let interruption = Interruption::watch().map_err(Error::Signals)?;
         let start = Instant::now();
         let gpu = progress.spin("device", || arguments.device.open())?;
@@ -130,6 +131,21 @@ impl Session {
             attendants: Vec::new(),
             warnings,
         })
+    }
+
+    /// Sets another scene on the same device, and forgets what attends.
+    ///
+    /// # Errors
+    /// If it cannot be rendered.
+    pub fn set_scene(&mut self, loaded: LoadedScene, load: Duration) -> Result<(), Error> {
+        let start = Instant::now();
+        self.built = self.progress.spin("bvh", || self.renderer.set_scene(&loaded.scene))?;
+        self.times = Times { load, scene: start.elapsed(), ..Times::default() };
+        self.gpu.check()?;
+        (self.scene, self.warnings) = (loaded.scene, loaded.warnings);
+        (self.photons, self.samples, self.time_limit_reached) = (0, 0, false);
+        self.attendants.clear();
+        Ok(())
     }
 
     /// Lets something attend to the work from now on.

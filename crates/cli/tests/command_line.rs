@@ -284,6 +284,26 @@ fn inspect_tells_what_a_scene_holds_without_a_device() {
 }
 
 #[test]
+fn frames_are_numbered_and_the_same_alone_or_in_a_run() {
+    let track = "[[animation.tracks]]\nkey = \"objects.ball.sphere.center\"\nframes = [1, 3]\nvalues = [[0, 0.4, 0], [0.4, 0.5, 0]]";
+    let workplace = Workplace::new(&format!("{BALL}\n{track}"));
+    workplace.render(&["--frames", "1..3", "-o", "a.exr", "--stats", "a.json", "--energy-maps", "maps"]);
+    let run =
+        ["a.0001.exr", "a.0001.json", "a.0002.exr", "a.0002.json", "a.0003.exr", "a.0003.json", "maps", "scene.toml"];
+    assert_eq!(workplace.files(), run);
+    workplace.render(&["--frames", "2..2", "-o", "b.exr", "--energy-maps", "alone"]);
+    let bytes = |name: &str| fs::read(workplace.path(name)).unwrap();
+    assert!(bytes("a.0002.exr") == bytes("b.0002.exr"), "the picture of a frame depends on those before");
+    assert!(bytes("maps/floor.0002.exr") == bytes("alone/floor.0002.exr"), "its maps do");
+    assert!(bytes("a.0001.exr") != bytes("a.0002.exr") && bytes("a.0002.exr") != bytes("a.0003.exr"), "nothing moves");
+
+    fs::write(workplace.path("still.toml"), BALL).unwrap();
+    workplace.run(&["still.toml", "--frames", "1..2"]).assert_refused(2, &["still.toml", "has no [animation]"]);
+    workplace.run(&["a.glb", "--frames", "1..2"]).assert_refused(2, &["a.glb: --frames goes with a scene file"]);
+    workplace.run(&["scene.toml", "--frames", "2"]).assert_refused(2, &["--frames", "such as 1..48"]);
+}
+
+#[test]
 fn adapters_and_memory_are_chosen() {
     let workplace = Workplace::new(BALL);
     workplace.run(&["scene.toml", "--adapter", "99"]).assert_refused(1, &["there is no GPU adapter 99; there are: 0 "]);

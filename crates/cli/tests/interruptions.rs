@@ -134,7 +134,10 @@ fn checkpoints_of_other_renders_are_refused_by_name() {
 fn more_samples_go_on_from_a_whole_render() {
     let workplace = Workplace::new();
     let photons = ["--photons", "10_000"];
-    assert_eq!(workplace.run(&[&photons[..], &["--samples", "2", "-o", "a.exr", "--checkpoint", "a.state"]].concat()).0, Some(0));
+    assert_eq!(
+        workplace.run(&[&photons[..], &["--samples", "2", "-o", "a.exr", "--checkpoint", "a.state"]].concat()).0,
+        Some(0)
+    );
     let more = [&photons[..], &["--samples", "5"]].concat();
     assert_eq!(workplace.run(&[&more[..], &["--resume", "a.state", "-o", "a.exr"]].concat()).0, Some(0));
     assert_eq!(workplace.run(&[&more[..], &["-o", "b.exr"]].concat()).0, Some(0));

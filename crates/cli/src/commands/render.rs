@@ -27,30 +27,45 @@ use self::{
 use crate::{
     Error,
     progress::{Progress, Seconds},
-    session::{Session, Times},
+    session::Session,
 };
 
-/// Renders the scene that the arguments name and writes the files that they ask for. Blocks until all is done; says on the
+/// Renders the scene that the arguments name, or frames of it, and writes the files that they ask for. Blocks until all is done; says on the
 /// standard error what happens.
 ///
 /// # Errors
 /// If the scene cannot be read or rendered, there is no device, or a file cannot be written. What can be checked before
 /// rendering is.
 pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
+    let mut session = None;
+    match arguments.frames.clone() {
+        None => render(arguments, None, &mut session),
+        Some(frames) => frames.into_iter().try_for_each(|frame| render(arguments, Some(frame), &mut session)),
+    }
+}
+
+/// Renders one picture, on the device of the one before.
+fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Session>) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.session.quiet);
     let scene_arguments = &arguments.session.scene;
-    let mut loaded = scene_arguments.load()?;
+    let mut loaded = scene_arguments.load_frame(frame)?;
     override_settings(&mut loaded.scene, arguments);
-    let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files)?;
+    let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files, frame)?;
     warn(progress, arguments, &mut loaded, &outputs);
-    let times = Times { load: start.elapsed(), ..Times::default() };
+    let load = start.elapsed();
 
-    let mut session = Session::open(&arguments.session, loaded, times)?;
+    let session = match kept {
+        Some(session) => {
+            session.set_scene(loaded, load)?;
+            session
+        }
+        None => kept.insert(Session::open(&arguments.session, loaded, load)?),
+    };
     let checkpoints = arguments.checkpoint.as_deref();
     let checkpoints = checkpoints.map(|path| Checkpoints::new(path, arguments.every, &scene_arguments.scene));
     if let Some(path) = &arguments.resume {
-        resume(&mut session, path)?;
+        resume(session, path)?;
     }
     session.engage(Refresh::new(&outputs.pictures));
     checkpoints.iter().for_each(|checkpoints| session.engage(checkpoints.clone()));
@@ -59,14 +74,14 @@ pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
     session.add_samples(deadline)?;
 
     let write_start = Instant::now();
-    let maps = write(&session, &mut outputs)?;
+    let maps = write(session, &mut outputs, frame)?;
     if let Some(checkpoints) = &checkpoints {
-        checkpoints.write(&session)?;
+        checkpoints.write(session)?;
     }
     session.times.write = write_start.elapsed();
     session.times.total = start.elapsed();
     if let Some(path) = &outputs.statistics {
-        write_report(&session, path, &scene_arguments.scene)?;
+        write_report(session, path, &scene_arguments.scene)?;
     }
     progress.say(Written { outputs: &outputs, maps, time: start.elapsed() });
     match session.interruption.signal() {
@@ -96,10 +111,10 @@ fn warn(progress: Progress, arguments: &RenderArguments, loaded: &mut LoadedScen
 }
 
 /// Writes pictures and energy maps; returns how many maps.
-fn write(session: &Session, outputs: &mut Outputs) -> Result<usize, Error> {
+fn write(session: &Session, outputs: &mut Outputs, frame: Option<u32>) -> Result<usize, Error> {
     write_pictures_of(session, &outputs.pictures)?;
     match &mut outputs.energy_maps {
-        Some(folder) => write_energy_maps(session, folder),
+        Some(folder) => write_energy_maps(session, folder, frame),
         None => Ok(0),
     }
 }
@@ -111,12 +126,13 @@ fn write_pictures_of(session: &Session, files: &[PathBuf]) -> Result<(), Error> 
     write_pictures(files, &picture, &session.renderer.layers()?, &display(&session.scene.output))
 }
 
-fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<usize, Error> {
+fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder, frame: Option<u32>) -> Result<usize, Error> {
     let mut count = 0;
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
         let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
-        folder.write(&object.name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
+        let name = object.name.clone() + &frame.map(|frame| format!(".{frame:04}")).unwrap_or_default();
+        folder.write(&name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
         count += 1;
     }
     Ok(count)

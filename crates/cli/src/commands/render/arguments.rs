@@ -1,9 +1,9 @@
 //! The arguments of `render`.
 
-use std::{path::PathBuf, time::Duration};
+use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
-    numbers::{parse_photons, parse_samples, parse_seconds},
+    numbers::{parse_frames, parse_photons, parse_samples, parse_seconds},
     session::SessionArguments,
 };
 
@@ -38,6 +38,13 @@ pub struct RenderArguments {
     /// Samples of each pixel, in place of the scene's number
     #[arg(long, value_name = "N", value_parser = parse_samples)]
     pub samples: Option<u32>,
+
+    /// Render frames A to B, both included, of the scene's [animation] into numbered files: NAME.0001.png
+    ///
+    /// Every file that is written has the frame's number before its ending. A frame is the same whether it is rendered alone or with others;
+    /// --time-limit is that of each.
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, conflicts_with_all = ["checkpoint", "resume"])]
+    pub frames: Option<RangeInclusive<u32>>,
 
     /// Keep in this file how far the render is, to go on from with --resume after a crash or another interruption
     #[arg(long, value_name = "FILE")]
@@ -102,6 +109,7 @@ pub(super) mod tests {
             energy_maps: Some("maps".into()),
             photons: Some(1_000_000),
             samples: Some(8),
+            frames: None,
             checkpoint: Some("c".into()),
             every: Duration::from_secs(60),
             resume: Some("r".into()),
@@ -111,5 +119,7 @@ pub(super) mod tests {
         let bare = parse(["a.toml"]).unwrap();
         assert_eq!((bare.outputs.len(), bare.photons, bare.time_limit, bare.session.quiet), (0, None, None, false));
         assert!(parse(["a.toml", "--every", "1s"]).is_err(), "without a checkpoint");
+        assert_eq!(parse(["a.toml", "--frames", "3..5"]).unwrap().frames, Some(3..=5));
+        assert!(parse(["a.toml", "--frames", "3..5", "--checkpoint", "c"]).is_err());
     }
 }
