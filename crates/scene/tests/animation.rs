@@ -113,12 +113,12 @@ fn wrong_tracks_are_named_with_or_without_a_frame() {
     for (right, wrong, texts) in cases {
         assert!(SCENE.contains(right), "{right:?}");
         for frame in [None, Some(3)] {
-            let error = read(SCENE.replace(right, wrong), frame).expect_err(wrong);
+            let error = read(&SCENE.replace(right, wrong), frame).expect_err(wrong);
             for part in texts {
                 assert!(error.contains(part), "{wrong:?}: {part:?} is missing in: {error}");
             }
         }
     }
-    let error = read(SCENE.replace("render.samples", "render.sample"), Some(1)).unwrap_err();
+    let error = read(&SCENE.replace("render.samples", "render.sample"), Some(1)).unwrap_err();
     assert!(error.contains("the override render.sample=10") && error.contains("did you mean \"samples\"?"), "{error}");
 }
