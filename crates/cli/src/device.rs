@@ -19,8 +19,7 @@ pub struct DeviceArguments {
 
     /// The most memory that scene, energy maps and film may take on the device, such as 512MiB or 4GB
     ///
-    /// Energy maps whose size the scene leaves open become smaller to take half of it at most; what still does not fit is refused, with the
-    /// sizes.
+    /// The sums of energy maps whose size the scene leaves open take a quarter of it at most; what still does not fit is refused, with the sizes.
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub device_memory: Option<u64>,
 }

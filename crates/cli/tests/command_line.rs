@@ -318,14 +318,14 @@ fn adapters_and_memory_are_chosen() {
         ],
     );
     workplace.run(&["scene.toml", "--device-memory", "some"]).assert_refused(2, &["--device-memory", "512MiB"]);
-    // Room for maps of half the limit: they shrink where the scene leaves their size open.
+    // Maps whose size the scene leaves open shrink to a quarter of the limit.
     let free = ["--set", "render={ width = 256, height = 256, samples = 1, photons = 1000 }", "--stats", "stats.json"];
     let texels = |flags: &[&str]| {
         workplace.render(&[&free[..], flags].concat());
-        workplace.json("stats.json")["maps"][0]["width"].as_u64().unwrap()
+        workplace.json("stats.json")["maps"][0]["texels"].as_u64().unwrap()
     };
-    let (wide, narrow) = (texels(&[]), texels(&["--device-memory", "30MB"]));
-    assert!(narrow < wide, "{narrow} and {wide} texels");
+    let (many, few) = (texels(&[]), texels(&["--device-memory", "11MB"]));
+    assert!(few < many && few * 24 <= 2_750_000, "{few} and {many} texels");
 }
 
 #[test]
@@ -442,12 +442,13 @@ fn too_large_for_any_device() -> Workplace {
 fn a_map_beyond_the_device_exits_with_1_and_names_both_sizes() {
     let workplace = too_large_for_any_device();
     let outcome = workplace.run(&["scene.toml"]);
-    let asked = 2 * 2 * 24 * 8192u64.pow(2);
-    outcome
-        .assert_refused(1, &["the energy maps need", &format!("{asked} bytes"), "the device allows", "lower map_size"]);
-    let available = outcome.stderr.split("the device allows ").nth(1).and_then(|rest| rest.split(':').next());
-    let available: u64 = available.unwrap().parse().unwrap();
-    assert!(available >= 128 << 20 && available < asked, "{available} bytes are said to be allowed");
+    outcome.assert_refused(1, &["the energy maps of each light group take ", "the device allows ", "lower map_size"]);
+    let bytes_after = |text: &str| {
+        let rest = outcome.stderr.split(text).nth(1).unwrap();
+        rest.split(|c: char| !c.is_ascii_digit()).next().unwrap().parse::<u64>().unwrap()
+    };
+    let (asked, available) = (bytes_after("light group take "), bytes_after("the device allows "));
+    assert!(available >= 128 << 20 && available < asked, "{asked} bytes are said to be asked, {available} allowed");
 }
 
 #[test]
@@ -468,11 +469,11 @@ fn a_failing_run_leaves_the_files_of_the_last_one() {
 fn a_full_disk_exits_with_1_and_leaves_the_files_after_it() {
     let workplace = Workplace::new(BALL);
     std::os::unix::fs::symlink("/dev/full", workplace.path("full.png")).unwrap();
-    fs::write(workplace.path("kept.exr"), "before").unwrap();
-    let outcome = workplace.run(&["scene.toml", "--output", "full.png", "--output", "kept.exr"]);
+    fs::write(workplace.path("kept.json"), "before").unwrap();
+    let outcome = workplace.run(&["scene.toml", "--output", "full.png", "--stats", "kept.json"]);
     outcome.assert_refused(1, &["full.png: the file cannot be written", "caused by", "No space left"]);
-    assert_eq!(fs::read_to_string(workplace.path("kept.exr")).unwrap(), "before");
-    assert_eq!(workplace.files(), ["full.png", "kept.exr", "scene.toml"]);
+    assert_eq!(fs::read_to_string(workplace.path("kept.json")).unwrap(), "before");
+    assert_eq!(workplace.files(), ["full.png", "kept.json", "scene.toml"]);
 }
 
 #[test]

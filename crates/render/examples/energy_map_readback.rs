@@ -29,15 +29,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     renderer.emit_photons(0..1_000_000)?;
 
     let map = renderer.energy_map(floor)?.ok_or("the floor is no receiver")?;
-    let texels = 0..map.sums.len();
-    let flux: f64 = texels.clone().map(|texel| map.flux(texel).y).sum();
-    let brightest = texels.max_by(|&a, &b| map.irradiance(a).y.total_cmp(&map.irradiance(b).y)).ok_or("no texels")?;
+    let flux: f64 = (0..map.sums.len()).map(|texel| map.flux(texel).y).sum();
+    println!("flux through the glass: {flux:.3} W in {} texels", map.sums.len());
+    // A grid of width × height, the front first; the texels themselves are as fine as light and camera need them.
+    let grid = map.resampled();
+    let brightest = (0..grid.len()).max_by(|&a, &b| grid[a].y.total_cmp(&grid[b].y)).ok_or("no texels")?;
     let (x, y) = (brightest % map.width as usize, brightest / map.width as usize);
-    println!("{} × {} texels, {} layers", map.width, map.height, map.layers);
-    println!(
-        "flux through the glass: {flux:.3} W; brightest texel ({x}, {y}): {:.1} W/m²",
-        map.irradiance(brightest).y
-    );
+    println!("brightest at ({x}, {y}) of {} × {}: {:.1} W/m²", map.width, map.height, grid[brightest].y);
 
     let statistics = renderer.statistics()?;
     let ledger = statistics.ledgers[0];

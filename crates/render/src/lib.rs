@@ -70,7 +70,7 @@
 
 pub use diacaustic_scene as scene;
 pub use diacaustic_shaders::AimTarget;
-pub use diacaustic_surface::MapLayout;
+pub use diacaustic_surface::{MapLayout, MapSquare, MapTile, MapTiles};
 pub use {glam, wgpu};
 
 mod aim;
@@ -87,6 +87,10 @@ mod guide;
 mod host_scene;
 mod layers;
 mod lights;
+mod map_placement;
+mod map_plan;
+mod map_records;
+mod map_sums;
 mod material_records;
 mod photon_pass;
 mod pilot;
@@ -99,6 +103,7 @@ mod self_test;
 mod spectra_records;
 mod statistics;
 mod texture_records;
+mod tile_choice;
 
 pub use aim::Emission;
 pub use display_pass::RenderParams;
@@ -109,6 +114,6 @@ pub use guide::{Guide, GuideTable};
 pub use layers::{FARTHEST_DEPTH, LayerChannel, LayerImage, LayerValues};
 pub use ray_query::{Ray, RayBatch, RayHit};
 pub use render_state::RenderState;
-pub use renderer::{Renderer, RendererOptions};
+pub use renderer::{DEFAULT_MAP_BUDGET, Renderer, RendererOptions};
 pub use self_test::LoopLimit;
 pub use statistics::{Ledger, LightReport, MapSize, PilotReport, SceneReport, Statistics};

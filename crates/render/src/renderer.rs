@@ -8,32 +8,38 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
+    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, PilotReport, RenderParams,
     RenderState, SceneReport, Statistics,
-    camera_pass::{CameraPass, Samples},
+    camera_pass::{CameraPass, Samples, Sightings},
     display_pass::DisplayPass,
-    energy_map::{EnergyMaps, ResolvePass},
     features::Features,
     fingerprint::{Difference, Fingerprint},
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
-    photon_pass::{PhotonPass, PhotonScene, Photons},
+    map_placement::{map_sizes, place_maps, texel_budget},
+    map_sums::{EnergyMaps, ResolvePass, bytes_of_texel, most_texels},
+    photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     render_state::SavedBuffer,
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
+    tile_choice::choose_tiles,
 };
 
 /// What is set once for a renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RendererOptions {
-    /// Bytes that the sums of all energy maps whose size the scene leaves open may take; what the device can bind if none.
+    /// Bytes that the sums of all energy maps whose size the scene leaves open may take; if none, what the scene says, else
+    /// [`DEFAULT_MAP_BUDGET`].
     pub map_budget: Option<u64>,
     /// Bytes that buffers and textures of a scene may take together, without what copies take for a moment; what the device gives if none. Maps
-    /// whose size the scene leaves open take half of it at most. While one scene replaces another, both are on the device.
+    /// whose size the scene leaves open have sums of a quarter of it at most. While one scene replaces another, both are on the device.
     pub memory: Option<u64>,
 }
+
+/// Bytes that the sums of energy maps may take, if nobody says: 256 MiB.
+pub const DEFAULT_MAP_BUDGET: u64 = 256 << 20;
 
 /// Dispatches that one call submits before it waits for them.
 pub(crate) const MOST_IN_FLIGHT: u32 = 256;
@@ -55,6 +61,8 @@ pub struct Renderer {
     display_pass: DisplayPass,
     query_pass: QueryPass,
     scene: Option<OnDevice>,
+    /// Whether the device runs nothing of what it is given.
+    is_dry: bool,
 }
 
 /// A scene on the device, and how far it is rendered.
@@ -77,8 +85,8 @@ struct OnDevice {
 impl OnDevice {
     /// What photons and samples accumulate in, by name.
     fn accumulated(&self) -> Vec<(&'static str, &wgpu::Buffer)> {
-        let of_photons = [("energy maps", &self.maps.sums), ("ledgers", &self.photons.ledger)];
-        of_photons.into_iter().chain(self.samples.accumulated()).collect()
+        let ledgers = [("ledgers", &self.photons.ledger)];
+        self.maps.accumulated().into_iter().chain(ledgers).chain(self.samples.accumulated()).collect()
     }
 
     /// What the bits of photons and samples depend on.
@@ -131,11 +139,13 @@ impl Renderer {
             loop_limit,
             scene_layout,
             scene: None,
+            is_dry: false,
         }
     }
 
-    /// What [`Renderer::set_scene`] would report, found without a device: triangles, maps and bytes on one whose buffers may be of 2 GiB. There
-    /// is no pilot. Blocks while it builds the scene on the host.
+    /// What [`Renderer::set_scene`] would report, found without a device, on one whose buffers may be of 2 GiB. There is no pilot, whose findings
+    /// choose the texels of maps whose size the scene leaves open: [`SceneReport::device_bytes`] counts all that they may take, and
+    /// [`SceneReport::maps`] what they would have if the camera did not see them. Blocks while it builds the scene on the host.
     ///
     /// # Errors
     /// As [`Renderer::set_scene`].
@@ -147,9 +157,8 @@ impl Renderer {
             ..Self::required_limits()
         };
         let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor { required_limits, ..Default::default() });
-        let mut unguided = scene.clone();
-        unguided.settings.guiding = false;
-        Self::on(&Gpu { device, queue, limit: None }, options, LoopLimit::NONE).set_scene(&unguided)
+        let gpu = Gpu { device, queue, limit: None };
+        Self { is_dry: true, ..Self::on(&gpu, options, LoopLimit::NONE) }.set_scene(scene)
     }
 
     /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
@@ -162,33 +171,37 @@ impl Renderer {
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
-        let limits = self.gpu.device.limits();
-        let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let half = self.options.memory.map_or(u64::MAX, |memory| memory / 2);
-        let host = HostScene::build(scene, self.options.map_budget.unwrap_or(u64::MAX).min(bindable).min(half))?;
-        let (triangles, bvh_nodes) = (host.triangles, host.bvh.nodes.len());
-        let (bvh_time, maps_time) = (host.bvh_time, host.maps_time);
-        let lights = light_reports(scene, &host.lights);
-        let (on_device, pilot) = self.gpu.clone().guarded(|| self.upload(scene, host))?;
+        let host = HostScene::build(scene)?;
         let report = SceneReport {
-            triangles,
-            bvh_nodes,
-            bvh_time,
-            maps_time,
-            pilot,
-            device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.bytes(),
-            maps: map_sizes(&on_device.maps),
-            photon_turns: on_device.photons.turns,
-            lights,
+            triangles: host.triangles,
+            bvh_nodes: host.bvh.nodes.len(),
+            bvh_time: host.bvh_time,
+            maps_time: host.maps_time,
+            map_budget: self.map_budget(scene),
+            lights: light_reports(scene, &host.lights),
+            ..SceneReport::default()
         };
+        let (on_device, report) = self.gpu.clone().guarded(|| self.upload(scene, host, report))?;
         self.scene = Some(on_device);
         Ok(report)
     }
 
-    /// Sends a scene to the device, and flies the pilots if photons are guided.
-    fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<(OnDevice, Option<PilotReport>), Error> {
+    /// Bytes that the sums of maps whose size the scene leaves open may take.
+    fn map_budget(&self, scene: &Scene) -> u64 {
+        let of_scene = scene.settings.map_budget.map(|mebibytes| u64::from(mebibytes) << 20);
+        let quarter = self.options.memory.map_or(u64::MAX, |memory| memory / 4);
+        self.options.map_budget.or(of_scene).unwrap_or(DEFAULT_MAP_BUDGET).min(quarter)
+    }
+
+    /// Sends a scene to the device, flies the pilots if photons are guided or a map's size is open, and then places the maps.
+    fn upload(
+        &mut self,
+        scene: &Scene,
+        host: HostScene,
+        mut report: SceneReport,
+    ) -> Result<(OnDevice, SceneReport), Error> {
         let gpu = &self.gpu.limited_to(self.options.memory);
-        let buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
+        let mut buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
         let photons_of = PhotonScene {
             settings: &scene.settings,
             lights: &host.lights,
@@ -197,18 +210,37 @@ impl Renderer {
             casters: &host.casters,
             around: host.around,
         };
-        let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements, host.lights.groups.names.len())?;
-        let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?;
-        let samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?;
-        let mut pilot = None;
-        if scene.settings.guiding && photons.can_emit() {
+        let groups = host.lights.groups.names.len();
+        let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, self.loop_limit)?;
+        let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
+        let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
+        let is_open = host.maps.iter().flatten().any(|plan| !plan.is_stated);
+        if !self.is_dry && photons.can_emit() && (scene.settings.guiding || is_open) {
             let start = Instant::now();
             let group = &buffers.bind_group;
-            let sightings =
-                samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &maps)?;
-            let report = photons.learn(gpu, &self.photon_pass, group, &maps, &sightings)?;
-            pilot = Some(PilotReport { time: start.elapsed(), ..report });
+            let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), 1)?;
+            sightings = samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &empty)?;
+            flights = photons.fly_pilots(gpu, &self.photon_pass, group, &empty, &host.maps, &sightings.list)?;
+            report.pilot = Some(PilotReport { time: start.elapsed(), ..flights.report });
         }
+        let start = Instant::now();
+        let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), groups);
+        let choice = choose_tiles(&host.maps, &sightings.list, sightings.pixels, flights.landings(), budget);
+        report.maps = map_sizes(&host.maps, &choice);
+        // What open maps may take beyond this, where no pilot has said how much they do.
+        let open =
+            host.maps.iter().zip(&choice.tiles).filter(|(plan, _)| plan.as_ref().is_some_and(|plan| !plan.is_stated));
+        let taken: u64 = open.filter_map(|(_, tiles)| tiles.as_ref()).map(|tiles| tiles.texel_count()).sum();
+        let reserve = if self.is_dry && is_open { budget.saturating_sub(taken) * bytes_of_texel(groups) } else { 0 };
+        let placements = place_maps(host.maps, choice, most_texels(&gpu.device.limits(), groups))?;
+        report.maps_time += start.elapsed();
+        let maps = EnergyMaps::new(gpu, &self.resolve_pass, placements, groups)?;
+        buffers.place_maps(gpu, &self.scene_layout, &maps)?;
+        photons.fill(gpu, &self.photon_pass, &maps, groups)?;
+        samples.show(gpu, &self.camera_pass, &maps)?;
+        report.map_bytes = maps.sums_bytes();
+        report.device_bytes = buffers.bytes + maps.bytes + reserve + samples.bytes();
+        report.photon_turns = photons.turns;
         let on_device = OnDevice {
             photons,
             samples,
@@ -221,7 +253,7 @@ impl Renderer {
             sample_count: 0,
             unresolved: true,
         };
-        Ok((on_device, pilot))
+        Ok((on_device, report))
     }
 
     /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot
@@ -488,16 +520,6 @@ fn light_reports(scene: &Scene, lights: &Lights) -> Vec<LightReport> {
     let names = names.chain(emissive_materials(scene).into_iter().map(|(_, name)| name));
     let flux = |number: usize| lights.emitters.iter().find(|e| e.number == number).map_or(Vec3::ZERO, |e| e.flux);
     names.enumerate().map(|(number, name)| LightReport { name, flux: flux(number).to_array() }).collect()
-}
-
-fn map_sizes(maps: &EnergyMaps) -> Vec<MapSize> {
-    let placed = maps.placements.iter().enumerate();
-    placed
-        .filter_map(|(object, map)| {
-            let layout = &map.as_ref()?.layout;
-            Some(MapSize { object, width: layout.width, height: layout.height, layers: layout.layers })
-        })
-        .collect()
 }
 
 fn check_limits(found: &wgpu::Limits) -> Result<(), Error> {

@@ -65,12 +65,18 @@ fn describe(scene: &Scene) -> Vec<String> {
 /// What the scene would take on a device.
 fn describe_needs(scene: &Scene, built: &SceneReport) -> Vec<String> {
     let maps = built.maps.iter().map(|map| {
-        let (name, [width, height]) = (&scene.objects[map.object].name, [map.width, map.height]);
+        let object = &scene.objects[map.object];
+        let size = match object.map_size.or(scene.settings.map_size) {
+            Some(_) => format!("{} × {} texels", map.width, map.height),
+            None => "texels as fine as the camera sees them".to_owned(),
+        };
         let sides = if map.layers > 1 { ", both sides" } else { "" };
-        format!("  {name}: {width} × {height} texels{sides}")
+        format!("  {}: {size}{sides}", object.name)
     });
+    let is_open = built.maps.iter().any(|map| scene.objects[map.object].map_size.or(scene.settings.map_size).is_none());
+    let most = if is_open { " at most" } else { "" };
     let bytes = Metric(built.device_bytes as f64);
-    [format!("on a device: {bytes}B, {} nodes of a hierarchy, {} energy maps", built.bvh_nodes, built.maps.len())]
+    [format!("on a device: {bytes}B{most}, {} nodes of a hierarchy, {} energy maps", built.bvh_nodes, built.maps.len())]
         .into_iter()
         .chain(maps)
         .collect()

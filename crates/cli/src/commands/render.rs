@@ -130,7 +130,7 @@ fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder, frame: Opt
     let mut count = 0;
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
-        let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
+        let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
         let name = object.name.clone() + &frame.map(|frame| format!(".{frame:04}")).unwrap_or_default();
         folder.write(&name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
         count += 1;
