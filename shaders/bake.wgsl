@@ -116,7 +116,7 @@ fn sample_texels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     path.seed = seed;
     path.pixel = index;
     path.layer = LAYER_EMISSION;
-    path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
+    path.sighting = Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0);
     let vertex = white_vertex(place.hit, texel.side, path.media, medium_ior(path.media, path.wavelength));
     path.direction = -vertex.point.n_g;
     // What reflects all light sends 1/π of its irradiance along each direction.

@@ -7,10 +7,10 @@ mod layout;
 
 pub use layout::{
     AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light,
-    MAX_AIM_TARGETS, Material, MaterialTextures, NONE, Object, PathParams, PhotonParams, QueryHit, QueryRay,
-    RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct,
-    Sighting, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger, light_kind,
-    light_layer, material_kind, texture_flag, triangle_flag,
+    MAX_AIM_TARGETS, MapLayer, MapSquare, MapTile, Material, MaterialTextures, NONE, PathParams, PhotonParams,
+    QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
+    SharedStruct, Sighting, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger,
+    light_kind, light_layer, map_tile, material_kind, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.

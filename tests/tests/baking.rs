@@ -86,7 +86,7 @@ fn caustics_hold_the_flux_that_photons_left() {
     let mut renderer = emit(&scene, scene.settings.photons);
     let map = lightmap(&mut renderer, 0, 4);
     let energy_map = renderer.energy_map(0).unwrap().unwrap();
-    let area = |texel: usize| energy_map.areas[texel % 81];
+    let area = |texel: usize| energy_map.areas[texel];
     let flux: f64 = (0..162).map(|texel| f64::from(map.caustic[texel][1]) * area(texel)).sum();
     let ledgers = renderer.statistics().unwrap().ledgers;
     let units: i64 = ledgers.iter().map(|ledger| ledger.deposited[1]).sum();

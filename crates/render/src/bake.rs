@@ -17,10 +17,10 @@ use self::{lightmap::spread_outwards, table::Table};
 use crate::{
     EnergyMap, Error,
     camera_pass::{OUTPUTS, outputs_group},
-    energy_map::EnergyMaps,
     features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose},
     layers::{LayerSums, kept_groups},
+    map_sums::EnergyMaps,
     random::combine,
     renderer::MOST_IN_FLIGHT,
 };
@@ -103,13 +103,11 @@ pub(crate) fn bake(
         lightmap.direct[index] = sums.direct.map(|sum| sum / sums.weight);
         lightmap.indirect[index] = sums.indirect.map(|sum| sum / sums.weight);
     }
-    let mut has_area = vec![false; lightmap.caustic.len()];
-    for (index, texel) in lightmap.caustic.iter_mut().enumerate() {
-        *texel = energy_map.irradiance(index).as_vec3().to_array();
-        has_area[index] = energy_map.areas[index % texels_in_layer] > 0.0;
-    }
+    lightmap.caustic = energy_map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
+    let holds_surface: Vec<bool> = lightmap.places.iter().map(Option::is_some).collect();
+    let holds_surface = holds_surface.repeat(layout.layers as usize);
     let Lightmap { direct, caustic, indirect, .. } = &mut lightmap;
-    for (texels, holds) in [(direct, &is_sampled), (indirect, &is_sampled), (caustic, &has_area)] {
+    for (texels, holds) in [(direct, &is_sampled), (indirect, &is_sampled), (caustic, &holds_surface)] {
         for (layer, holds) in texels.chunks_mut(texels_in_layer).zip(holds.chunks(texels_in_layer)) {
             spread_outwards(layer, layout.width as usize, holds);
         }

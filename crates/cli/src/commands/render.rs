@@ -95,7 +95,7 @@ fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<
     let mut count = 0;
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
-        let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
+        let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
         let borders = session.renderer.map_layout(index)?.map_or_else(Vec::new, chart_borders);
         let irradiance = Irradiance { width: map.width, height: map.height, texels: &texels, chart_borders: &borders };
         folder.write(&object.name, &irradiance)?;

@@ -202,7 +202,7 @@ mod tests {
 
     fn layout() -> MapLayout {
         let triangle = [Vec2::new(0.5, 0.25), Vec2::new(6.5, 1.0), Vec2::new(2.0, 4.75)];
-        MapLayout { width: 8, height: 6, layers: 1, corners: vec![triangle] }
+        MapLayout { width: 8, height: 6, layers: 1, corners: vec![triangle], ..MapLayout::default() }
     }
 
     #[test]

@@ -32,7 +32,8 @@ mod tests {
     #[test]
     fn a_square_of_two_triangles_has_four_borders() {
         let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(Vec2::from);
-        let layout = MapLayout { width: 5, height: 5, layers: 1, corners: vec![[a, b, c], [a, c, d]] };
+        let layout =
+            MapLayout { width: 5, height: 5, layers: 1, corners: vec![[a, b, c], [a, c, d]], ..MapLayout::default() };
         let borders = chart_borders(&layout);
         assert_eq!(borders.len(), 4);
         assert!(!borders.iter().any(|[from, to]| from[0] != to[0] && from[1] != to[1]), "{borders:?}");
