@@ -49,7 +49,7 @@ impl SceneArguments {
     /// # Errors
     /// If it cannot be read, or is glTF and an argument is for scene files, or the other way round.
     pub fn load(&self) -> Result<LoadedScene, Error> {
-        self.load_with(false)
+        self.load_frame(None)
     }
 
     /// Reads the scene as [`Self::load`] does, also without a camera.
@@ -57,25 +57,38 @@ impl SceneArguments {
     /// # Errors
     /// As [`Self::load`].
     pub fn load_for_baking(&self) -> Result<LoadedScene, Error> {
-        self.load_with(true)
+        self.load_with(None, true)
     }
 
-    fn load_with(&self, may_lack_camera: bool) -> Result<LoadedScene, Error> {
+    /// Reads the scene as it is at a frame of its animation, or without any.
+    ///
+    /// # Errors
+    /// As [`SceneArguments::load`], and if it has no animation.
+    pub fn load_frame(&self, frame: Option<u32>) -> Result<LoadedScene, Error> {
+        self.load_with(frame, false)
+    }
+
+    fn load_with(&self, frame: Option<u32>, may_lack_camera: bool) -> Result<LoadedScene, Error> {
         let read = ReadOptions { allow_outside: self.allow_outside };
-        let mut loaded = if self.is_gltf() {
+        if self.is_gltf() {
+            if frame.is_some() {
+                return Err(Error::FramesOfGltf(self.scene.clone()));
+            }
             if let Some(first) = self.overrides.first() {
                 return Err(Error::OverrideOfGltf { scene: self.scene.clone(), path: first.path() });
             }
-            load_gltf_scene(&self.scene, &StudioOptions { floor: self.floor, read })?
-        } else {
-            if self.floor {
-                return Err(Error::FloorOfSceneFile(self.scene.clone()));
-            }
-            load_scene_with(&self.scene, &SceneOptions { overrides: self.overrides.clone(), read, may_lack_camera })?
-        };
-        let settings = &mut loaded.scene.settings;
-        settings.seed = self.seed.unwrap_or(settings.seed);
-        Ok(loaded)
+            let mut loaded = load_gltf_scene(&self.scene, &StudioOptions { floor: self.floor, read })?;
+            let settings = &mut loaded.scene.settings;
+            settings.seed = self.seed.unwrap_or(settings.seed);
+            return Ok(loaded);
+        }
+        if self.floor {
+            return Err(Error::FloorOfSceneFile(self.scene.clone()));
+        }
+        let mut overrides = self.overrides.clone();
+        // Each frame may have a seed of its own that begins with it.
+        overrides.extend(self.seed.map(|seed| Override::parse(&format!("render.seed={seed}"))).transpose()?);
+        Ok(load_scene_with(&self.scene, &SceneOptions { overrides, frame, read, may_lack_camera })?)
     }
 
     /// Whether the scene is a glTF file by its name.

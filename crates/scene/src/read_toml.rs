@@ -1,5 +1,6 @@
 //! Reads scenes from TOML.
 
+mod animation;
 mod lights;
 mod materials;
 mod objects;
@@ -38,6 +39,8 @@ pub struct LoadedScene {
 pub struct SceneOptions {
     /// Values in place of the file's, in order.
     pub overrides: Vec<Override>,
+    /// The frame of the file's `[animation]` whose values count; if none, those outside of it.
+    pub frame: Option<u32>,
     /// What may be read. It concerns what glTF and OBJ files name; the scene file itself may name files anywhere.
     pub read: ReadOptions,
     /// Whether the file may leave its camera out: one that sees every object then stands for it.
@@ -72,16 +75,32 @@ pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<Loade
 /// Reads a scene as [`parse_scene`] does, with options.
 ///
 /// # Errors
-/// As [`parse_scene`], and if an override leads to no place in the text.
+/// As [`parse_scene`], if an override leads to no place in the text, and if a frame is asked for and the text has no `[animation]`.
 pub fn parse_scene_with(
     text: &str,
     base_dir: &Path,
     file_name: &str,
     options: &SceneOptions,
 ) -> Result<LoadedScene, Error> {
-    let document = Document::parse(text, file_name, &options.overrides)?;
+    let still = Document::parse(text, file_name, &options.overrides)?;
+    let mut overrides = options.overrides.clone();
+    let mut seed_offset = 0;
+    match (still.root().get("animation"), options.frame) {
+        (Some(entry), frame) => {
+            let table = entry.table("[animation]".to_owned(), "a table: [animation]")?;
+            let at_frame = animation::at_frame(&table, frame.unwrap_or(0))?;
+            if frame.is_some() {
+                overrides.extend(at_frame.overrides);
+                seed_offset = at_frame.seed_offset;
+            }
+        }
+        (None, Some(_)) => return Err(still.root().error("has no [animation], so it has no frames")),
+        (None, None) => {}
+    }
+    let document = Document::parse(text, file_name, &overrides)?;
     let sections = Sections::split(document.root(), options.may_lack_camera)?;
-    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
+    let ReadScene { mut scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
+    scene.settings.seed = scene.settings.seed.wrapping_add(seed_offset);
     warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
     Ok(LoadedScene { scene, warnings })
 }
@@ -108,7 +127,17 @@ struct Sections<'d> {
 
 impl<'d> Sections<'d> {
     fn split(root: Table<'d>, may_lack_camera: bool) -> Result<Self, Error> {
-        root.allow_only(&["background", "ambient", "camera", "render", "output", "materials", "lights", "objects"])?;
+        root.allow_only(&[
+            "background",
+            "ambient",
+            "animation",
+            "camera",
+            "render",
+            "output",
+            "materials",
+            "lights",
+            "objects",
+        ])?;
         let optional =
             |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
         if !may_lack_camera {
