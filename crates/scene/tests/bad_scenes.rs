@@ -252,6 +252,7 @@ const CASES: &[(&str, &str, &str)] = &[
         "x.toml:16:11: [render]: guiding: expected true or false, found the whole number 1",
     ),
     ("map_size = 1024", "map_size = 1", "x.toml:17:1: render: map_size is 1; it must be from 2 to 8192"),
+    ("map_size = 1024", "map_budget = 0", "x.toml:17:1: render: map_budget is 0; it must be from 1 to 65536 (MiB)"),
     (
         r#"filter = "box""#,
         r#"filter = "blackman_haris""#,
@@ -458,7 +459,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         r#"name = "ground""#,
         r#"nam = "ground""#,
-        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size"#,
+        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, map_uvs"#,
     ),
     (
         r#"material = "floor""#,
@@ -503,7 +504,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "rotate = [0, 45, 0]",
         "rotation = [0, 45, 0]",
-        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size"#,
+        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, map_uvs"#,
     ),
     (
         "scale = 1.5",
