@@ -66,6 +66,18 @@ pub struct Arguments {
     #[arg(long)]
     pub floor: bool,
 
+    /// Pose a glTF file's scene as its animation has it at this time
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+
+    /// The animation of a glTF file, by name or by number from 0; without it the first, if a time is given
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+
+    /// The material variant of a glTF file, by name
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+
     /// Read files that a glTF or OBJ file names outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
@@ -122,7 +134,7 @@ mod tests {
     fn all_flags_are_read() {
         let read = parse(
             "a.toml --output a.exr --output a.png --stats s.json --energy-maps maps --photons 1_000_000 --samples 8 \
-             --seed 7 --time-limit 2.5 --floor --allow-outside --quiet",
+             --seed 7 --time-limit 2.5 --floor --time -1.5 --animation walk --variant red --allow-outside --quiet",
         );
         let expected = Arguments {
             scene: "a.toml".into(),
@@ -134,6 +146,9 @@ mod tests {
             seed: Some(7),
             time_limit: Some(Duration::from_millis(2500)),
             floor: true,
+            time: Some(-1.5),
+            animation: Some("walk".into()),
+            variant: Some("red".into()),
             allow_outside: true,
             quiet: true,
         };

@@ -21,6 +21,14 @@ pub enum Error {
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
+    /// What only a glTF file has is asked of a scene file.
+    #[error("{}: --{option} goes with a glTF file; in a scene file, give its [[objects]] the key {option}", path.display())]
+    GltfOption {
+        /// The scene file.
+        path: PathBuf,
+        /// The option, without its dashes.
+        option: &'static str,
+    },
     /// One file would be written over another.
     #[error("{}: named twice; name a file of its own for each output, and not the scene", .0.display())]
     NamedTwice(PathBuf),
@@ -31,7 +39,7 @@ impl Error {
     pub fn exit_status(&self) -> u8 {
         use diacaustic::Error as Render;
         match self {
-            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) => 2,
+            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::GltfOption { .. } => 2,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
             Self::Render(_) | Self::Device(_) | Self::Output(_) => 1,

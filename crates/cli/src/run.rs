@@ -9,8 +9,8 @@ use std::{
 use diacaustic::{
     Renderer, RendererOptions, SceneReport,
     scene::{
-        LoadedScene, OutputSettings, ReadOptions, Scene, StudioOptions, ToneCurve, Warning, load_gltf_scene,
-        load_scene_with,
+        GltfOptions, LoadedScene, OutputSettings, ReadOptions, Scene, StudioOptions, ToneCurve, Warning,
+        load_gltf_scene, load_scene_with,
     },
 };
 use diacaustic_headless::{Gpu, OpenOptions};
@@ -69,10 +69,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Error> {
 fn load(arguments: &Arguments) -> Result<LoadedScene, Error> {
     let read = ReadOptions { allow_outside: arguments.allow_outside };
     if is_gltf(&arguments.scene) {
-        return Ok(load_gltf_scene(&arguments.scene, &StudioOptions { floor: arguments.floor, read })?);
+        let Arguments { time, animation, variant, .. } = arguments.clone();
+        let file = GltfOptions { read, time, animation, variant };
+        return Ok(load_gltf_scene(&arguments.scene, &StudioOptions { floor: arguments.floor, file })?);
     }
     if arguments.floor {
         return Err(Error::FloorOfSceneFile(arguments.scene.clone()));
+    }
+    let gltf_options = [
+        ("time", arguments.time.is_some()),
+        ("animation", arguments.animation.is_some()),
+        ("variant", arguments.variant.is_some()),
+    ];
+    if let Some((option, _)) = gltf_options.iter().find(|(_, is_given)| *is_given) {
+        return Err(Error::GltfOption { path: arguments.scene.clone(), option });
     }
     Ok(load_scene_with(&arguments.scene, read)?)
 }

@@ -46,6 +46,7 @@ mod self_test;
 mod spectra_records;
 mod statistics;
 mod texture_records;
+mod vertex_color_records;
 
 pub use aim::Emission;
 pub use display_pass::RenderParams;

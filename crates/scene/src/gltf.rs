@@ -3,6 +3,7 @@
 //! The crate `gltf-json` gives the lists of the file their types; whatever they refer to is checked here.
 
 mod accessors;
+mod animations;
 mod buffers;
 mod container;
 mod fault;
@@ -11,17 +12,19 @@ mod lights;
 mod materials;
 mod meshes;
 mod nodes;
+mod options;
 mod pose;
 mod primitives;
 mod textures;
+mod variants;
 
 use std::{collections::HashMap, fs, path::Path, sync::Arc};
 
 use glam::{Affine3A, DAffine3};
 use gltf_json::Root;
 
-pub use self::lights::GltfCamera;
 use self::{
+    animations::motions,
     buffers::Buffers,
     fault::{Fault, Result, place, shortened},
     instances::read_instances,
@@ -32,7 +35,8 @@ use self::{
     pose::Pose,
     textures::TextureReader,
 };
-use crate::{Error, Light, Material, Mesh, ReadOptions, Warning, folder::Folder};
+pub use self::{lights::GltfCamera, options::GltfOptions};
+use crate::{Error, Light, Material, Mesh, Warning, folder::Folder};
 
 /// What a glTF file shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,13 +66,13 @@ pub struct GltfObject {
     pub materials: Vec<usize>,
 }
 
-/// Reads a glTF file: the default scene, at rest. The files that it names must lie in its folder or below, unless the options
+/// Reads a glTF file: the default scene, at rest or posed by an animation. The files that it names must lie in its folder or below, unless the options
 /// allow otherwise; nothing is fetched.
 ///
 /// # Errors
-/// If the file or one that it names cannot be read, makes no sense, or requires an extension that is not supported. What is used and
-/// not supported is a warning.
-pub fn load_gltf(path: &Path, options: ReadOptions) -> std::result::Result<GltfFile, Error> {
+/// If the file or one that it names cannot be read, makes no sense, or requires an extension that is not supported, and if it lacks the
+/// animation or variant that the options name. What is used and not supported is a warning.
+pub fn load_gltf(path: &Path, options: &GltfOptions) -> std::result::Result<GltfFile, Error> {
     let bytes = fs::read(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
     parse_gltf(&bytes, path, options)
 }
@@ -77,12 +81,12 @@ pub fn load_gltf(path: &Path, options: ReadOptions) -> std::result::Result<GltfF
 ///
 /// # Errors
 /// As [`load_gltf`].
-pub fn parse_gltf(bytes: &[u8], path: &Path, options: ReadOptions) -> std::result::Result<GltfFile, Error> {
-    let folder = Folder::of(path, options);
-    read(bytes, path, &folder).map_err(|fault| fault.error(path))
+pub fn parse_gltf(bytes: &[u8], path: &Path, options: &GltfOptions) -> std::result::Result<GltfFile, Error> {
+    let folder = Folder::of(path, options.read);
+    read(bytes, path, &folder, options).map_err(|fault| fault.error(path))
 }
 
-fn read(bytes: &[u8], path: &Path, folder: &Folder) -> Result<GltfFile> {
+fn read(bytes: &[u8], path: &Path, folder: &Folder, options: &GltfOptions) -> Result<GltfFile> {
     let container = container::split(bytes)?;
     let root = container::parse(container.json)?;
     let unsupported = container::check_extensions(&root)?;
@@ -90,9 +94,9 @@ fn read(bytes: &[u8], path: &Path, folder: &Folder) -> Result<GltfFile> {
     let textures = TextureReader::new(&root, &buffers, folder);
     let mut reader = Reader {
         root: &root,
-        meshes: MeshReader::new(&root, &buffers),
+        meshes: MeshReader::new(&root, &buffers, variants::variant(&root, options.variant.as_deref())?),
         materials: MaterialReader::new(&root, textures),
-        nodes: Nodes::read(&root)?,
+        nodes: Nodes::read(&root, motions(&root, &buffers, options)?)?,
         shared: HashMap::new(),
         triangles_left: MOST_TRIANGLES,
         warnings: Vec::new(),

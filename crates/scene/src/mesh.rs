@@ -19,6 +19,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one for each position, or empty. (0, 0) is a picture's lower left corner, (1, 1) its upper right one.
     pub uvs: Vec<Vec2>,
+    /// Factors on the material's colour, linear Rec. 709, 0 to 1 in each channel, one for each position, or empty.
+    pub colors: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, its index into [`Mesh::material_slots`]; empty when there is one slot or none.
@@ -77,6 +79,7 @@ impl Mesh {
                     self.triangles[triangle][corner] = self.positions.len() as u32;
                     self.positions.push(self.positions[vertex]);
                     self.uvs.extend(self.uvs.get(vertex).copied());
+                    self.colors.extend(self.colors.get(vertex).copied());
                     self.normals.push(facet);
                 } else {
                     self.normals[vertex] = facet;

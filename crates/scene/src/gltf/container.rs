@@ -8,12 +8,16 @@ use super::fault::{Fault, Result};
 const MOST_JSON_OBJECTS: usize = 4_000_000;
 
 /// Extensions that are read in full, or in which nothing is lost when they are passed over.
-const SUPPORTED: [&str; 9] = [
+pub(super) const SUPPORTED: [&str; 13] = [
     "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_specular",
     "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",

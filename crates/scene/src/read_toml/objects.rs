@@ -10,10 +10,11 @@ use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
 use crate::{
-    Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj, primitives::are_perpendicular,
+    Error, GltfFile, GltfOptions, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj,
+    primitives::are_perpendicular,
 };
 
-const OBJECT_KEYS: [&str; 11] = [
+const OBJECT_KEYS: [&str; 14] = [
     "name",
     "mesh",
     "sphere",
@@ -25,7 +26,12 @@ const OBJECT_KEYS: [&str; 11] = [
     "rotate",
     "scale",
     "map_size",
+    "time",
+    "animation",
+    "variant",
 ];
+/// Keys that go with glTF files alone.
+const GLTF_KEYS: [&str; 3] = ["time", "animation", "variant"];
 const SHAPE_KEYS: [&str; 4] = ["mesh", "sphere", "rectangle", "box"];
 
 /// Subdivisions of a sphere that names none: 16128 triangles.
@@ -40,9 +46,10 @@ pub(super) struct ObjectReader<'a> {
     pub(super) warnings: Vec<Warning>,
     named_materials: HashMap<String, usize>,
     meshes: HashMap<PathBuf, SharedMesh>,
-    gltf_files: HashMap<PathBuf, Arc<GltfFile>>,
-    /// Where the materials of glTF files stand in `materials`, of those that an object uses.
-    gltf_materials: HashMap<(PathBuf, usize), usize>,
+    /// Those read so far, with what of them.
+    gltf_files: Vec<(PathBuf, GltfOptions, Arc<GltfFile>)>,
+    /// Where the materials of glTF files, by their index in `gltf_files`, stand in `materials`, of those that an object uses.
+    gltf_materials: HashMap<(usize, usize), usize>,
     object_names: HashSet<String>,
     /// The last number given to each name that several objects have.
     name_numbers: HashMap<String, usize>,
@@ -79,7 +86,7 @@ impl<'a> ObjectReader<'a> {
             warnings: Vec::new(),
             named_materials,
             meshes: HashMap::new(),
-            gltf_files: HashMap::new(),
+            gltf_files: Vec::new(),
             gltf_materials: HashMap::new(),
             object_names: HashSet::new(),
             name_numbers: HashMap::new(),
@@ -109,6 +116,9 @@ impl<'a> ObjectReader<'a> {
         let shape = one_shape(&table)?;
         if shape.key() == "mesh" && has_ending(&self.mesh_path(&shape)?, &["gltf", "glb"]) {
             return self.read_gltf_objects(&table, &shape, name);
+        }
+        if let Some(entry) = GLTF_KEYS.iter().find_map(|key| table.get(key)) {
+            return Err(entry.error("goes with a glTF file alone; leave it out"));
         }
         let shape = self.read_shape(&shape)?;
         let materials = self.read_materials(&table, &shape)?;
@@ -154,7 +164,8 @@ impl<'a> ObjectReader<'a> {
         name: Option<&str>,
     ) -> Result<Vec<Object>, Error> {
         let path = self.mesh_path(entry)?;
-        let file = self.gltf_file(&path, entry)?;
+        let number = self.gltf_file(path, read_gltf_options(table, self.options)?, entry)?;
+        let file = Arc::clone(&self.gltf_files[number].2);
         let mut slots: Vec<_> =
             file.objects.iter().flat_map(|part| &part.mesh.material_slots).map(String::as_str).collect();
         slots.sort_unstable();
@@ -164,9 +175,8 @@ impl<'a> ObjectReader<'a> {
         let mut objects = Vec::new();
         for part in &file.objects {
             let slots = part.mesh.material_slots.iter().zip(&part.materials);
-            let materials = slots.map(|(slot, of_file)| {
-                choices[slot.as_str()].unwrap_or_else(|| self.gltf_material(&path, &file, *of_file))
-            });
+            let materials = slots
+                .map(|(slot, of_file)| choices[slot.as_str()].unwrap_or_else(|| self.gltf_material(number, *of_file)));
             objects.push(Object {
                 materials: materials.collect(),
                 name: match name {
@@ -192,24 +202,25 @@ impl<'a> ObjectReader<'a> {
         }
     }
 
-    fn gltf_file(&mut self, path: &Path, entry: &Entry<'_>) -> Result<Arc<GltfFile>, Error> {
-        if let Some(file) = self.gltf_files.get(path) {
-            return Ok(Arc::clone(file));
+    /// The number of a glTF file among those read, which it joins on its first use.
+    fn gltf_file(&mut self, path: PathBuf, options: GltfOptions, entry: &Entry<'_>) -> Result<usize, Error> {
+        let is_same = |(read, how, _): &(PathBuf, GltfOptions, _)| *read == path && *how == options;
+        if let Some(number) = self.gltf_files.iter().position(is_same) {
+            return Ok(number);
         }
-        let file = load_gltf(path, self.options).map_err(|cause| in_file(entry, cause))?;
+        let file = load_gltf(&path, &options).map_err(|cause| in_file(entry, cause))?;
         if file.objects.is_empty() {
             return Err(entry.error(format!("is {}, whose scene has no triangles", path.display())));
         }
         self.warnings.extend(file.warnings.iter().cloned());
-        let file = Arc::new(file);
-        self.gltf_files.insert(path.to_owned(), Arc::clone(&file));
-        Ok(file)
+        self.gltf_files.push((path, options, Arc::new(file)));
+        Ok(self.gltf_files.len() - 1)
     }
 
     /// The index of a glTF file's material, which joins the scene on its first use.
-    fn gltf_material(&mut self, path: &Path, file: &GltfFile, index: usize) -> usize {
-        *self.gltf_materials.entry((path.to_owned(), index)).or_insert_with(|| {
-            self.materials.push(file.materials[index].clone());
+    fn gltf_material(&mut self, file: usize, index: usize) -> usize {
+        *self.gltf_materials.entry((file, index)).or_insert_with(|| {
+            self.materials.push(self.gltf_files[file].2.materials[index].clone());
             self.materials.len() - 1
         })
     }
@@ -312,6 +323,17 @@ fn in_file(entry: &Entry<'_>, cause: Error) -> Error {
 
 fn read_map_size(table: &Table<'_>) -> Result<Option<u32>, Error> {
     table.get("map_size").map(|entry| entry.whole32()).transpose()
+}
+
+/// When, by which animation and in which variant a glTF file is read.
+fn read_gltf_options(table: &Table<'_>, read: ReadOptions) -> Result<GltfOptions, Error> {
+    let text = |key, expected| table.get(key).map(|entry| entry.string(expected).map(str::to_owned)).transpose();
+    Ok(GltfOptions {
+        read,
+        time: table.get("time").map(|entry| entry.number()).transpose()?,
+        animation: text("animation", "the name of an animation, or its number from 0 in quotes")?,
+        variant: text("variant", "the name of a material variant")?,
+    })
 }
 
 /// Whether a warning matters only to objects that take their material from the MTL file.
