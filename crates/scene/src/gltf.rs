@@ -18,7 +18,12 @@ mod primitives;
 mod textures;
 mod variants;
 
-use std::{collections::HashMap, fs, path::Path, sync::Arc};
+use std::{
+    collections::{BTreeSet, HashMap},
+    fs,
+    path::Path,
+    sync::Arc,
+};
 
 use glam::{Affine3A, DAffine3};
 use gltf_json::Root;
@@ -198,13 +203,14 @@ impl Reader<'_, '_> {
         let SlottedMesh { mut mesh, slots } = slotted;
         let mut materials = Vec::new();
         let is_volume = |slot: &Option<usize>| self.materials.is_volume(*slot);
-        let is_whole_closed = slots.iter().any(is_volume) && mesh.open_edges() == 0;
-        for (number, slot) in slots.iter().enumerate() {
-            let is_closed =
-                self.materials.is_volume(*slot) && (is_whole_closed || part(&mesh, number as u32).open_edges() == 0);
+        mesh.material_slots = slots.iter().map(|slot| self.materials.name(*slot)).collect();
+        let are_closed = match slots.iter().any(is_volume) {
+            true if mesh.open_edges() > 0 => mesh.closed_slots(),
+            _ => vec![true; slots.len()],
+        };
+        for (slot, is_closed) in slots.iter().zip(are_closed) {
             materials.push(self.materials.index(*slot, is_closed)?);
         }
-        mesh.material_slots = slots.iter().map(|slot| self.materials.name(*slot)).collect();
         Ok((Arc::new(mesh), materials))
     }
 
@@ -228,13 +234,6 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The triangles of one slot.
-fn part(mesh: &Mesh, slot: u32) -> Mesh {
-    let in_slot = |triangle: &usize| mesh.triangle_slots.get(*triangle).copied().unwrap_or(0) == slot;
-    let triangles = (0..mesh.triangles.len()).filter(in_slot).map(|triangle| mesh.triangles[triangle]).collect();
-    Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() }
-}
-
 /// Makes the names of lights differ.
 fn number_names(lights: &mut [Light]) {
     let mut counts = HashMap::<String, usize>::new();
@@ -255,7 +254,7 @@ fn number_names(lights: &mut [Light]) {
 }
 
 /// A few names as messages list them.
-fn listed(names: &[String]) -> String {
+fn listed(names: &BTreeSet<String>) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<_> = names.iter().take(SHOWN).map(|name| format!("{name:?}")).collect();
     let rest = names.len().saturating_sub(SHOWN);

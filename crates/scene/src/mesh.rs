@@ -110,8 +110,28 @@ impl Mesh {
         unequal_counts(&upwards, &downwards)
     }
 
+    /// For each slot, whether its triangles by themselves are a closed surface, as [`open_edges`](Self::open_edges) tells.
+    pub(crate) fn closed_slots(&self) -> Vec<bool> {
+        if self.material_slots.len() < 2 {
+            return vec![self.open_edges() == 0; self.material_slots.len()];
+        }
+        let welded = self.welded_vertices();
+        let mut edges = Vec::with_capacity(3 * self.triangles.len());
+        for (corners, slot) in self.triangles.iter().zip(&self.triangle_slots) {
+            let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
+            let sides = [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to);
+            edges.extend(sides.map(|(from, to)| (*slot, from.min(to), from.max(to), from < to)));
+        }
+        edges.sort_unstable();
+        let mut is_closed = vec![true; self.material_slots.len()];
+        for passes in edges.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
+            is_closed[passes[0].0 as usize] &= 2 * passes.iter().filter(|pass| pass.3).count() == passes.len();
+        }
+        is_closed
+    }
+
     /// For each vertex, the first in order of those that have its position.
-    fn welded_vertices(&self) -> Vec<u32> {
+    pub(crate) fn welded_vertices(&self) -> Vec<u32> {
         // Adding 0 turns -0 into +0, so that both weld.
         let key = |vertex: u32| (self.positions[vertex as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
         let mut order: Vec<u32> = (0..self.positions.len() as u32).collect();
@@ -144,6 +164,21 @@ fn unequal_counts(first: &[u64], second: &[u64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn slots_are_closed_by_themselves() {
+        let cube = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+        let mut mesh = cube.clone();
+        mesh.triangles.extend(&cube.triangles);
+        mesh.triangle_slots = [vec![0; 12], vec![1; 12]].concat();
+        mesh.material_slots = vec!["a".to_owned(), "b".to_owned()];
+        assert_eq!(mesh.closed_slots(), [true, true]);
+        mesh.triangle_slots[13] = 0;
+        assert_eq!((mesh.closed_slots(), mesh.open_edges()), (vec![false, false], 0));
+        mesh.triangle_slots[13] = 1;
+        mesh.triangles[13] = [0, 0, 0];
+        assert_eq!(mesh.closed_slots(), [true, false]);
+    }
 
     #[test]
     fn open_edges_are_counted() {

@@ -237,6 +237,6 @@ fn decoded(most: u16, color_space: ColorSpace) -> Vec<f32> {
 }
 
 /// The light that a number of an sRGB picture stands for (IEC 61966-2-1).
-fn linear_from_srgb(encoded: f64) -> f64 {
+pub(crate) fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -181,5 +181,5 @@ fn a_scene_file_names_time_animation_and_variant() {
     let error = load("mesh = \"m.glb\"\nvariant = \"plain\"").unwrap_err();
     assert!(error.contains("the material variant \"plain\" was asked for, and the file has \"festive\""), "{error}");
     let error = load("sphere = { center = [0, 0, 0], radius = 1 }\nmaterial = \"m\"\ntime = 1").unwrap_err();
-    assert!(error.contains("time: goes with a glTF file alone"), "{error}");
+    assert!(error.contains("time goes with a glTF file alone"), "{error}");
 }

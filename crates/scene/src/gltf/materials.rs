@@ -4,7 +4,7 @@ mod layers;
 mod numbers;
 mod pictures;
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use glam::Vec3;
 use gltf_json::{Root, material::AlphaMode};
@@ -36,7 +36,7 @@ pub(super) struct MaterialReader<'a, 'b> {
     pub(super) materials: Vec<Material>,
     indices: HashMap<(Option<usize>, bool), usize>,
     /// Unsupported extensions, each with the materials that have it.
-    pub(super) unsupported: BTreeMap<String, Vec<String>>,
+    pub(super) unsupported: BTreeMap<String, BTreeSet<String>>,
     pub(super) warnings: Vec<Fault>,
 }
 
@@ -132,9 +132,7 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         {
             let users = self.unsupported.entry(name.clone()).or_default();
             let name = self.names[index].clone();
-            if !users.contains(&name) {
-                users.push(name);
-            }
+            users.insert(name);
         }
     }
 

@@ -112,6 +112,7 @@ impl<'a, 'b> MeshReader<'a, 'b> {
 struct Builder {
     mesh: Mesh,
     slots: Vec<Option<usize>>,
+    slot_numbers: HashMap<Option<usize>, u32>,
     /// Corners of primitives that have no normals at all.
     corners_without: usize,
 }
@@ -207,11 +208,10 @@ impl Builder {
     }
 
     fn slot(&mut self, material: Option<usize>) -> u32 {
-        let known = self.slots.iter().position(|slot| *slot == material);
-        known.unwrap_or_else(|| {
+        *self.slot_numbers.entry(material).or_insert_with(|| {
             self.slots.push(material);
-            self.slots.len() - 1
-        }) as u32
+            self.slots.len() as u32 - 1
+        })
     }
 
     /// The mesh, if it has triangles, and how many corners have unusable normals.

@@ -10,11 +10,11 @@ use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
 use crate::{
-    Error, GltfFile, GltfOptions, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj,
-    primitives::are_perpendicular,
+    Error, GltfFile, GltfOptions, Material, Mesh, MeshFile, MeshOptions, ObjFile, Object, ReadOptions, Warning,
+    load_gltf, load_obj, load_ply, load_stl, primitives::are_perpendicular,
 };
 
-const OBJECT_KEYS: [&str; 14] = [
+const OBJECT_KEYS: [&str; 15] = [
     "name",
     "mesh",
     "sphere",
@@ -29,6 +29,7 @@ const OBJECT_KEYS: [&str; 14] = [
     "time",
     "animation",
     "variant",
+    "crease_angle",
 ];
 /// Keys that go with glTF files alone.
 const GLTF_KEYS: [&str; 3] = ["time", "animation", "variant"];
@@ -45,7 +46,8 @@ pub(super) struct ObjectReader<'a> {
     pub(super) materials: Vec<Material>,
     pub(super) warnings: Vec<Warning>,
     named_materials: HashMap<String, usize>,
-    meshes: HashMap<PathBuf, SharedMesh>,
+    /// Those read so far, with their crease angles.
+    meshes: Vec<(PathBuf, f32, SharedMesh)>,
     /// Those read so far, with what of them.
     gltf_files: Vec<(PathBuf, GltfOptions, Arc<GltfFile>)>,
     /// Where the materials of glTF files, by their index in `gltf_files`, stand in `materials`, of those that an object uses.
@@ -85,7 +87,7 @@ impl<'a> ObjectReader<'a> {
             materials,
             warnings: Vec::new(),
             named_materials,
-            meshes: HashMap::new(),
+            meshes: Vec::new(),
             gltf_files: Vec::new(),
             gltf_materials: HashMap::new(),
             object_names: HashSet::new(),
@@ -120,7 +122,7 @@ impl<'a> ObjectReader<'a> {
         if let Some(entry) = GLTF_KEYS.iter().find_map(|key| table.get(key)) {
             return Err(entry.error("goes with a glTF file alone; leave it out"));
         }
-        let shape = self.read_shape(&shape)?;
+        let shape = self.read_shape(&table, &shape)?;
         let materials = self.read_materials(&table, &shape)?;
         Ok(vec![Object {
             name: name.map_or_else(|| self.unused_name(&shape.default_name), str::to_owned),
@@ -142,18 +144,23 @@ impl<'a> ObjectReader<'a> {
         candidate
     }
 
-    fn read_shape(&mut self, shape: &Entry<'_>) -> Result<SharedMesh, Error> {
-        let inner = || shape.table(shape.place(), "a table: { key = value, ... }");
-        match shape.key() {
-            "sphere" => Ok(SharedMesh::primitive(read_sphere(&inner()?)?, "sphere")),
-            "rectangle" => Ok(SharedMesh::primitive(read_rectangle(&inner()?)?, "rectangle")),
-            "box" => Ok(SharedMesh::primitive(read_box(&inner()?)?, "box")),
-            _ => self.read_mesh_file(shape),
+    fn read_shape(&mut self, table: &Table<'_>, shape: &Entry<'_>) -> Result<SharedMesh, Error> {
+        if shape.key() == "mesh" {
+            return self.read_mesh_file(table, shape);
         }
+        if let Some(entry) = table.get("crease_angle") {
+            return Err(entry.error("goes with a mesh from an OBJ, PLY or STL file alone; leave it out"));
+        }
+        let inner = shape.table(shape.place(), "a table: { key = value, ... }")?;
+        Ok(match shape.key() {
+            "sphere" => SharedMesh::primitive(read_sphere(&inner)?, "sphere"),
+            "rectangle" => SharedMesh::primitive(read_rectangle(&inner)?, "rectangle"),
+            _ => SharedMesh::primitive(read_box(&inner)?, "box"),
+        })
     }
 
     fn mesh_path(&self, entry: &Entry<'_>) -> Result<PathBuf, Error> {
-        Ok(self.base_dir.join(entry.string("the path of an OBJ or glTF file, relative to the scene file")?))
+        Ok(self.base_dir.join(entry.string("the path of a mesh's file, relative to the scene file")?))
     }
 
     /// An object for each of a glTF file's.
@@ -225,18 +232,21 @@ impl<'a> ObjectReader<'a> {
         })
     }
 
-    fn read_mesh_file(&mut self, entry: &Entry<'_>) -> Result<SharedMesh, Error> {
+    fn read_mesh_file(&mut self, table: &Table<'_>, entry: &Entry<'_>) -> Result<SharedMesh, Error> {
         let path = self.mesh_path(entry)?;
-        if let Some(mesh) = self.meshes.get(&path) {
+        let mut options = MeshOptions::from(self.options);
+        if let Some(angle) = table.get("crease_angle") {
+            options.crease_angle = angle.number()?;
+            if !(0.0..=180.0).contains(&options.crease_angle) {
+                let angle_stated = options.crease_angle;
+                return Err(angle.error(format!("is {angle_stated}; it must be from 0 to 180 (degrees)")));
+            }
+        }
+        let is_same = |(read, angle, _): &&(PathBuf, f32, SharedMesh)| *read == path && *angle == options.crease_angle;
+        if let Some((.., mesh)) = self.meshes.iter().find(is_same) {
             return Ok(mesh.clone());
         }
-        if !has_ending(&path, &["obj"]) {
-            return Err(entry.error(format!(
-                "is {}; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb",
-                path.display()
-            )));
-        }
-        let file = load_obj(&path, self.options).map_err(|cause| in_file(entry, cause))?;
+        let file = load_mesh(&path, &options, entry)?;
         self.warnings.extend(file.warnings.iter().filter(|warning| !is_about_textures(warning)).cloned());
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let shared = SharedMesh {
@@ -245,7 +255,7 @@ impl<'a> ObjectReader<'a> {
             mtl: file.materials,
             warnings: file.warnings,
         };
-        self.meshes.insert(path, shared.clone());
+        self.meshes.push((path, options.crease_angle, shared.clone()));
         Ok(shared)
     }
 
@@ -294,7 +304,7 @@ impl<'a> ObjectReader<'a> {
             return Some(index);
         }
         let textures = shape.warnings.iter().filter(
-            |warning| matches!(warning, Warning::IgnoredTextures { material: name, .. } if *name == material.name),
+            |warning| matches!(warning, Warning::IgnoredTextures { material: name, .. } | Warning::UnreadPicture { material: name, .. } | Warning::OpenGlass { material: name, .. } if *name == material.name),
         );
         self.warnings.extend(textures.cloned());
         self.materials.push(material.clone());
@@ -315,6 +325,24 @@ fn one_shape<'d>(table: &Table<'d>) -> Result<Entry<'d>, Error> {
 
 fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|found| endings.iter().any(|ending| found.eq_ignore_ascii_case(ending)))
+}
+
+/// A mesh from a file of any kind but glTF.
+fn load_mesh(path: &Path, options: &MeshOptions, entry: &Entry<'_>) -> Result<ObjFile, Error> {
+    let without_materials = |MeshFile { mesh, warnings }| ObjFile { mesh, materials: Vec::new(), warnings };
+    let read = if has_ending(path, &["obj"]) {
+        load_obj(path, options)
+    } else if has_ending(path, &["ply"]) {
+        load_ply(path, options).map(without_materials)
+    } else if has_ending(path, &["stl"]) {
+        load_stl(path, options).map(without_materials)
+    } else {
+        return Err(entry.error(format!(
+            "is {}; meshes are read from OBJ, PLY, STL and glTF files, whose names end in .obj, .ply, .stl, .gltf or .glb",
+            path.display()
+        )));
+    };
+    read.map_err(|cause| in_file(entry, cause))
 }
 
 fn in_file(entry: &Entry<'_>, cause: Error) -> Error {
@@ -338,7 +366,7 @@ fn read_gltf_options(table: &Table<'_>, read: ReadOptions) -> Result<GltfOptions
 
 /// Whether a warning matters only to objects that take their material from the MTL file.
 fn is_about_textures(warning: &Warning) -> bool {
-    matches!(warning, Warning::IgnoredTextures { .. })
+    matches!(warning, Warning::IgnoredTextures { .. } | Warning::UnreadPicture { .. } | Warning::OpenGlass { .. })
 }
 
 fn no_material(table: &Table<'_>, shape: &SharedMesh, slot: usize) -> Error {
