@@ -11,6 +11,7 @@ mod instances;
 mod lights;
 mod materials;
 mod meshes;
+mod meshopt;
 mod nodes;
 mod options;
 mod pose;

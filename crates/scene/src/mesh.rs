@@ -7,6 +7,9 @@ use glam::{Vec2, Vec3};
 /// The square of the length below which a normal is taken for a missing one.
 const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
 
+/// Edges that are counted at a time.
+const EDGES_PER_PASS: u32 = 1 << 22;
+
 /// An indexed triangle mesh in its object's frame, in metres.
 ///
 /// Triangles are counter-clockwise seen from outside. A vertex is a (position, normal, uv) triple: a position that
@@ -93,12 +96,20 @@ impl Mesh {
     /// closed, consistently wound surface, also with triangles that welding makes a line or a point of.
     pub fn open_edges(&self) -> usize {
         let welded = self.welded_vertices();
+        let passes = 1 + 3 * self.triangles.len() as u32 / EDGES_PER_PASS;
+        (0..passes).map(|pass| self.open_edges_of_pass(&welded, pass, passes)).sum()
+    }
+
+    /// Those of a part of the edges: a list of all of a large mesh would take as much memory as the mesh.
+    fn open_edges_of_pass(&self, welded: &[u32], pass: u32, passes: u32) -> usize {
         let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
         for corners in &self.triangles {
             let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                let edge = u64::from(from.min(to)) << 32 | u64::from(from.max(to));
+                let (low, high) = (from.min(to), from.max(to));
+                let edge = u64::from(low) << 32 | u64::from(high);
                 match from.cmp(&to) {
+                    _ if low % passes != pass => {}
                     Ordering::Less => upwards.push(edge),
                     Ordering::Greater => downwards.push(edge),
                     Ordering::Equal => {}

@@ -70,7 +70,9 @@ pub(crate) fn decode_texture(bytes: &[u8], color_space: ColorSpace, most_texels:
         Err(_) => return Err("is neither PNG nor JPEG by its content".to_owned()),
     };
     let (width, height) = match format {
-        ImageFormat::Png => PngDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
+        ImageFormat::Png => {
+            PngDecoder::with_limits(Cursor::new(bytes), Limits::default()).map_err(undecodable)?.dimensions()
+        }
         _ => JpegDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
     };
     check_size(width, height)?;
