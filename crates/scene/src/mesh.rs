@@ -7,8 +7,9 @@ use glam::{Vec2, Vec3};
 /// The square of the length below which a normal is taken for a missing one.
 const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
 
-/// Edges that are counted at a time.
-const EDGES_PER_PASS: u32 = 1 << 22;
+/// From how many triangles on edges are counted in passes, and in how many.
+const LARGE: usize = 1 << 17;
+const PASSES: u32 = 8;
 
 /// An indexed triangle mesh in its object's frame, in metres.
 ///
@@ -96,7 +97,7 @@ impl Mesh {
     /// closed, consistently wound surface, also with triangles that welding makes a line or a point of.
     pub fn open_edges(&self) -> usize {
         let welded = self.welded_vertices();
-        let passes = 1 + 3 * self.triangles.len() as u32 / EDGES_PER_PASS;
+        let passes = if self.triangles.len() < LARGE { 1 } else { PASSES };
         (0..passes).map(|pass| self.open_edges_of_pass(&welded, pass, passes)).sum()
     }
 

@@ -18,7 +18,8 @@ impl PolygonCutter {
         let count = corners.len() as u32;
         let fan = || (2..count).map(|last| [0, last - 1, last]).collect();
         let normal = doubled_area(corners);
-        if count == 3 || normal == Vec3::ZERO || is_convex(corners, normal) {
+        // Coordinates near the end of single precision have no area that it could tell.
+        if count == 3 || normal == Vec3::ZERO || !normal.is_finite() || is_convex(corners, normal) {
             return fan();
         }
         let (u, v) = normal.normalize_or(Vec3::Z).any_orthonormal_pair();
@@ -164,7 +165,8 @@ mod tests {
         let mut cutter = PolygonCutter::default();
         let square = polygon(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
         assert_eq!(cutter.cut(&square), [[0, 1, 2], [0, 2, 3]]);
-        for points in [vec![[0.0, 0.0]; 5], vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [0.5, 0.5]]] {
+        let huge = vec![[0.0, 0.0], [3e38, 3e38], [0.0, 1e38], [-3e38, 3e38]];
+        for points in [vec![[0.0, 0.0]; 5], vec![[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [0.5, 0.5]], huge] {
             assert!(!cutter.cut(&polygon(&points)).is_empty());
         }
         let star = [[0.0, 1.0], [-0.6, -0.8], [0.95, 0.3], [-0.95, 0.3], [0.6, -0.8]];

@@ -4,6 +4,7 @@ mod lights;
 mod materials;
 mod objects;
 mod refraction;
+mod shapes;
 mod table;
 mod textures;
 

@@ -8,10 +8,13 @@ use std::{
 
 use glam::{Affine3A, DMat3, Vec3};
 
-use super::table::{Entry, Table};
+use super::{
+    shapes::{read_box, read_rectangle, read_sphere},
+    table::{Entry, Table},
+};
 use crate::{
     Error, GltfFile, GltfOptions, Material, Mesh, MeshFile, MeshOptions, ObjFile, Object, ReadOptions, Warning,
-    load_gltf, load_obj, load_ply, load_stl, primitives::are_perpendicular,
+    load_gltf, load_obj, load_ply, load_stl,
 };
 
 const OBJECT_KEYS: [&str; 15] = [
@@ -34,9 +37,6 @@ const OBJECT_KEYS: [&str; 15] = [
 /// Keys that go with glTF files alone.
 const GLTF_KEYS: [&str; 3] = ["time", "animation", "variant"];
 const SHAPE_KEYS: [&str; 4] = ["mesh", "sphere", "rectangle", "box"];
-
-/// Subdivisions of a sphere that names none: 16128 triangles.
-const SPHERE_SUBDIVISIONS: u32 = 6;
 
 /// Reads objects; holds what they share.
 pub(super) struct ObjectReader<'a> {
@@ -400,46 +400,4 @@ fn read_placement(table: &Table<'_>) -> Result<Affine3A, Error> {
     let rotation = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
     let linear = rotation * DMat3::from_diagonal(scale.as_dvec3());
     Ok(Affine3A::from_mat3_translation(linear.as_mat3(), vector("translate")?))
-}
-
-fn read_sphere(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["center", "radius", "subdivisions"])?;
-    let center = table.require("center", "3 numbers [x, y, z], metres")?.vector()?;
-    let radius_entry = table.require("radius", "a number, metres")?;
-    let radius = radius_entry.number()?;
-    if radius <= 0.0 {
-        return Err(radius_entry.error(format!("is {radius}; it must be greater than 0 (metres)")));
-    }
-    let mut subdivisions = SPHERE_SUBDIVISIONS;
-    if let Some(entry) = table.get("subdivisions") {
-        subdivisions = entry.whole32()?;
-        let most = Mesh::MAX_SPHERE_SUBDIVISIONS;
-        if !(1..=most).contains(&subdivisions) {
-            return Err(entry.error(format!("is {subdivisions}; it must be from 1 to {most}")));
-        }
-    }
-    Ok(Mesh::sphere(center, radius, subdivisions))
-}
-
-fn read_rectangle(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["center", "edge_u", "edge_v"])?;
-    let vector = |key| table.require(key, "3 numbers [x, y, z], metres")?.vector();
-    let (center, edge_u, edge_v) = (vector("center")?, vector("edge_u")?, vector("edge_v")?);
-    if edge_u.length() == 0.0 || edge_v.length() == 0.0 {
-        return Err(table.error("edge_u and edge_v must not have length 0"));
-    }
-    if !are_perpendicular(edge_u, edge_v) {
-        return Err(table.error("edge_u and edge_v must be perpendicular; for another shape, use an OBJ mesh"));
-    }
-    Ok(Mesh::rectangle(center, edge_u, edge_v))
-}
-
-fn read_box(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["min", "max"])?;
-    let vector = |key| table.require(key, "3 numbers [x, y, z], metres")?.vector();
-    let (min, max) = (vector("min")?, vector("max")?);
-    if !min.cmplt(max).all() {
-        return Err(table.error(format!("min {min} must be less than max {max} along each axis")));
-    }
-    Ok(Mesh::cuboid(min, max))
 }

@@ -43,6 +43,9 @@ impl Layers {
             Ok([read("clearcoatFactor")?, read("clearcoatRoughnessFactor")?])
         });
         let has = |key: &str| specular.is_some_and(|specular| specular.get(key).is_some());
+        if let Some(n) = ior.filter(|n| !(*n >= 0.0 && n.is_finite())) {
+            return Err(Fault::new(place, format!("has the ior {n}; it must be finite and 0 or greater")));
+        }
         let reflectance = ior.map_or(PLASTIC_REFLECTANCE, |n| Vec3::splat(((n - 1.0) / (n + 1.0)).powi(2)));
         Ok(Self {
             reflectance: (factor * color * reflectance).min(Vec3::splat(MOST_REFLECTANCE)),
