@@ -113,15 +113,18 @@ fn weights_and_joints_follow_an_animation() {
     assert_eq!(file.objects[0].mesh.positions[0], Vec3::new(0.0, 3.0, 0.0));
 }
 
+/// A change of a file's JSON.
+type Change = fn(&mut Value);
+
 #[test]
 fn faults_of_animations_are_named() {
-    let fault = |change: fn(&mut Value)| {
+    let fault = |change: Change| {
         let mut builder = Builder::tetrahedron();
         add_animation(&mut builder, "a", "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
         change(&mut builder.json);
         read(&builder, Some(0.5), None).unwrap_err()
     };
-    let cases: [(fn(&mut Value), &str); 10] = [
+    let cases: [(Change, &str); 10] = [
         (|json| json["animations"][0]["channels"][0]["sampler"] = json!(3), "names samplers[3]"),
         (|json| json["animations"][0]["channels"][0]["target"]["node"] = json!(3), "names nodes[3]"),
         (|json| json["animations"][0]["channels"][0]["target"]["path"] = json!("color"), "has an unknown path"),

@@ -93,7 +93,7 @@ pub(super) fn properties_of_vertices(element: &ElementDef) -> Result<[bool; 3], 
     let is_number = |name: &&str| {
         element.properties.get(*name).is_some_and(|property| matches!(property.data_type, PropertyType::Scalar(_)))
     };
-    let has_all = |names: &[&str]| names.iter().all(|name| is_number(&name));
+    let has_all = |names: &[&str]| names.iter().all(&is_number);
     if let Some(name) = ["x", "y", "z"].iter().find(|name| !is_number(name)) {
         return Err(format!("has vertices without the property {name:?}"));
     }
@@ -106,7 +106,7 @@ pub(super) fn face_indices(element: &ElementDef) -> Result<(), String> {
     let is_list = |name: &&str| {
         element.properties.get(*name).is_some_and(|property| matches!(property.data_type, PropertyType::List(..)))
     };
-    if FACE_INDICES.iter().any(|name| is_list(&name)) {
+    if FACE_INDICES.iter().any(is_list) {
         return Ok(());
     }
     Err("has faces without the list \"vertex_indices\"".to_owned())
