@@ -11,7 +11,7 @@ import package::emitter::sphere::{nearest_sphere, SphereHit};
 import package::film::layers::{
     add_to_caustic_of_group, add_to_data_layers, add_to_group, add_to_layer, add_to_no_group, add_to_squares,
 };
-import package::film::texels::{footprint, Footprint};
+import package::film::texels::{footprint, map_layer, map_place, Footprint};
 import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::camera_pass::{
@@ -127,7 +127,7 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.seed = seed;
     path.pixel = index;
     path.layer = LAYER_EMISSION;
-    path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
+    path.sighting = Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0);
     return path;
 }
 
@@ -289,17 +289,21 @@ fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     }
     (*path).radiance += (*path).beta * sent;
     if notes_sightings {
-        note_sighting(path, vertex, place.texels.x);
+        note_sighting(path, vertex, map_layer(object, vertex.point.front), map_place(hit));
     }
 }
 
-/// Notes the texel beside a vertex: the path's first, or its last.
-fn note_sighting(path: ptr<function, Path>, vertex: Vertex, texel: u32) {
-    if (*path).sighting.texel == NONE {
-        (*path).sighting.texel = texel;
+/// Notes where a vertex lies on the maps: the path's first, or its last.
+fn note_sighting(path: ptr<function, Path>, vertex: Vertex, layer: u32, place: vec2<f32>) {
+    if (*path).sighting.layer == NONE {
+        (*path).sighting.layer = layer;
+        (*path).sighting.x = place.x;
+        (*path).sighting.y = place.y;
         (*path).sighting.weight = dot((*path).beta * vertex.material.base * (1.0 - vertex.gloss), vec3<f32>(1.0 / (3.0 * PI)));
     } else {
-        (*path).sighting.bounced_texel = texel;
+        (*path).sighting.bounced_layer = layer;
+        (*path).sighting.bounced_x = place.x;
+        (*path).sighting.bounced_y = place.y;
     }
 }
 
@@ -341,7 +345,9 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
         (*path).shadow_pending = true;
         (*path).shadow_origin = leave(point, wi);
         (*path).shadow_direction = wi;
-        (*path).shadow_length = select(SHADOW_RAY_LENGTH * light.distance, FAR, light.distance >= FAR);
+        // The ray leaves the surface some way off the point that the distance is from.
+        let length = SHADOW_RAY_LENGTH * light.distance - distance((*path).shadow_origin, point.position);
+        (*path).shadow_length = select(length, FAR, light.distance >= FAR);
         (*path).unblocked = brought;
         if has_light_layers {
             // The gloss of a receiver that is no caster counts with its base.
@@ -581,7 +587,7 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     add_to_squares(index, film.pixels[index], path.radiance);
     film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {
-        let seen = path.sighting;
-        sightings[index] = Sighting(seen.texel, seen.bounced_texel, seen.weight, dot(path.radiance, vec3<f32>(1.0 / 3.0)));
+        path.sighting.radiance = dot(path.radiance, vec3<f32>(1.0 / 3.0));
+        sightings[index] = path.sighting;
     }
 }

@@ -6,11 +6,11 @@
 mod layout;
 
 pub use layout::{
-    AimTarget, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light, MAX_AIM_TARGETS, Material,
-    MaterialTextures, NONE, Object, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
-    SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SurfaceTexture,
+    AimTarget, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light, MAX_AIM_TARGETS, MapLayer,
+    MapSquare, MapTile, Material, MaterialTextures, NONE, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS,
+    ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SurfaceTexture,
     TextureCoordinates, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger, light_kind, light_layer,
-    material_kind, texture_flag, triangle_flag,
+    map_tile, material_kind, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.

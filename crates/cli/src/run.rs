@@ -196,7 +196,7 @@ impl Session {
         let mut count = 0;
         for (index, object) in self.scene.objects.iter().enumerate() {
             let Some(map) = self.renderer.energy_map(index)? else { continue };
-            let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
+            let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
             folder.write(&object.name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
             count += 1;
         }

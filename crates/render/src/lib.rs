@@ -19,7 +19,7 @@
 
 pub use diacaustic_scene as scene;
 pub use diacaustic_shaders::AimTarget;
-pub use diacaustic_surface::MapLayout;
+pub use diacaustic_surface::{MapLayout, MapSquare, MapTile, MapTiles};
 pub use {glam, wgpu};
 
 mod aim;
@@ -35,6 +35,10 @@ mod guide;
 mod host_scene;
 mod layers;
 mod lights;
+mod map_placement;
+mod map_plan;
+mod map_records;
+mod map_sums;
 mod material_records;
 mod photon_pass;
 mod pilot;
@@ -46,6 +50,7 @@ mod self_test;
 mod spectra_records;
 mod statistics;
 mod texture_records;
+mod tile_choice;
 mod vertex_color_records;
 
 pub use aim::Emission;
@@ -56,6 +61,6 @@ pub use film::Film;
 pub use guide::{Guide, GuideTable};
 pub use layers::{FARTHEST_DEPTH, LayerChannel, LayerImage, LayerValues};
 pub use ray_query::{Ray, RayBatch, RayHit};
-pub use renderer::{Renderer, RendererOptions};
+pub use renderer::{DEFAULT_MAP_BUDGET, Renderer, RendererOptions};
 pub use self_test::LoopLimit;
 pub use statistics::{Ledger, LightReport, MapSize, PilotReport, SceneReport, Statistics};

@@ -188,6 +188,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "guiding",
         "footprints",
         "map_size",
+        "map_budget",
         "filter",
         "wavelength",
     ])?;
@@ -205,6 +206,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         guiding: table.get("guiding").map_or(Ok(default.guiding), |entry| entry.boolean())?,
         footprints: table.get("footprints").map_or(Ok(default.footprints), |entry| entry.boolean())?,
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
+        map_budget: table.get("map_budget").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
         wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
     })

@@ -1,6 +1,6 @@
 //! Normals for meshes that have none: smooth, but for creases.
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 use crate::Mesh;
 
@@ -89,7 +89,8 @@ impl Mesh {
                 }
                 self.triangles[triangle][corner] = *added.entry((vertex, group)).or_insert_with(|| {
                     self.positions.push(self.positions[vertex as usize]);
-                    self.uvs.extend(self.uvs.get(vertex as usize).copied() as Option<Vec2>);
+                    self.uvs.extend(self.uvs.get(vertex as usize).copied());
+                    self.map_uvs.extend(self.map_uvs.get(vertex as usize).copied());
                     self.colors.extend(self.colors.get(vertex as usize).copied());
                     self.normals.push(normal);
                     self.positions.len() as u32 - 1

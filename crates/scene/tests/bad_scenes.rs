@@ -458,7 +458,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         r#"name = "ground""#,
         r#"nam = "ground""#,
-        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle"#,
+        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         r#"material = "floor""#,
@@ -503,7 +503,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "rotate = [0, 45, 0]",
         "rotation = [0, 45, 0]",
-        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle"#,
+        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         "scale = 1.5",

@@ -7,14 +7,16 @@ mod chart;
 mod error;
 mod light_surfaces;
 mod texel_area;
+mod tile;
 mod touching;
 mod triangles;
 
 pub use bounds::{BoundingSphere, caster_bounds, merge_spheres, scene_bounds};
 pub use bvh::{Bvh, BvhNode, MAX_DEPTH};
-pub use chart::{MapLayout, uvs_overlap};
+pub use chart::{MapLayout, check_map_uvs};
 pub use error::Error;
 pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use texel_area::texel_areas;
+pub use tile::{FINEST_LEVEL, MapSquare, MapTile, MapTiles};
 pub use touching::{RAY_OFFSET, separate_touching};
 pub use triangles::{WorldTriangle, world_triangles};

@@ -13,11 +13,11 @@ use super::{
     table::{Entry, Table},
 };
 use crate::{
-    Error, GltfFile, GltfOptions, Material, Mesh, MeshFile, MeshOptions, ObjFile, Object, ReadOptions, Warning,
+    Chart, Error, GltfFile, GltfOptions, Material, Mesh, MeshFile, MeshOptions, ObjFile, Object, ReadOptions, Warning,
     load_gltf, load_obj, load_ply, load_stl,
 };
 
-const OBJECT_KEYS: [&str; 15] = [
+const OBJECT_KEYS: [&str; 16] = [
     "name",
     "mesh",
     "sphere",
@@ -33,6 +33,7 @@ const OBJECT_KEYS: [&str; 15] = [
     "animation",
     "variant",
     "crease_angle",
+    "map_uvs",
 ];
 /// Keys that go with glTF files alone.
 const GLTF_KEYS: [&str; 3] = ["time", "animation", "variant"];
@@ -124,13 +125,15 @@ impl<'a> ObjectReader<'a> {
         }
         let shape = self.read_shape(&table, &shape)?;
         let materials = self.read_materials(&table, &shape)?;
-        Ok(vec![Object {
+        let mut objects = vec![Object {
             name: name.map_or_else(|| self.unused_name(&shape.default_name), str::to_owned),
             mesh: shape.mesh,
             world_from_object: read_placement(&table)?,
             materials,
             map_size: read_map_size(&table)?,
-        }])
+        }];
+        self.set_map_uvs(&table, &mut objects)?;
+        Ok(objects)
     }
 
     /// The name itself, or with the first number from 2 that makes it differ from every other object's.
@@ -197,6 +200,7 @@ impl<'a> ObjectReader<'a> {
             });
         }
         self.set_map_size(&mut objects, map_size);
+        self.set_map_uvs(table, &mut objects)?;
         Ok(objects)
     }
 
@@ -207,6 +211,28 @@ impl<'a> ObjectReader<'a> {
         for object in objects.iter_mut().filter(|object| !has_receiver || is_receiver(object)) {
             object.map_size = map_size;
         }
+    }
+
+    /// Lets the objects that have an energy map take their texture coordinates for it, if the table says so.
+    fn set_map_uvs(&self, table: &Table<'_>, objects: &mut [Object]) -> Result<(), Error> {
+        let Some(entry) = table.get("map_uvs") else { return Ok(()) };
+        if !entry.boolean()? {
+            return Ok(());
+        }
+        let is_receiver = |object: &Object| object.materials.iter().any(|index| self.materials[*index].is_receiver());
+        let mut found = false;
+        for object in objects.iter_mut().filter(|object| is_receiver(object)) {
+            found = true;
+            if object.mesh.map_places().is_empty() {
+                let problem = format!("is true, but the mesh of object {:?} has no texture coordinates", object.name);
+                return Err(entry.error(problem));
+            }
+            Arc::make_mut(&mut object.mesh).chart = Chart::Uvs;
+        }
+        if !found {
+            return Err(entry.error("is true, but only objects with a diffuse share have an energy map; leave it out"));
+        }
+        Ok(())
     }
 
     /// The number of a glTF file among those read, which it joins on its first use.
