@@ -208,6 +208,19 @@ fn a_stated_size_is_even_or_refused() {
 }
 
 #[test]
+fn sums_larger_than_a_binding_are_whole() {
+    let mut scene = ball_on_a_floor(2.0, ", guiding = false");
+    scene.settings.map_size = Some(2000);
+    let (mut renderer, report) = set(&scene);
+    assert!(report.map_bytes > 128 << 20, "{} bytes fit into a binding of WebGPU's default limits", report.map_bytes);
+    renderer.emit_photons(0..20_000).unwrap();
+    let map = renderer.energy_map(0).unwrap().unwrap();
+    let deposited = renderer.statistics().unwrap().ledgers[0].deposited;
+    assert_eq!(map.sums.iter().map(|sum| sum[1]).sum::<i64>(), deposited[1]);
+    assert!(deposited[1] > 0, "nothing was deposited");
+}
+
+#[test]
 fn a_resampled_map_shows_the_irradiance() {
     let scene = evenly_lit_floor("");
     let (mut renderer, _) = set(&scene);

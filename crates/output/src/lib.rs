@@ -30,7 +30,7 @@ pub use error::Error;
 pub use open_exr::{Channel, Values, write_exr, write_exr_with_channels};
 pub use picture::{Format, Picture, write_picture};
 pub use png::{Display, write_png};
-pub use replace::check_writable;
+pub use replace::{check_writable, is_device_or_pipe, replace};
 pub use statistics::{
     Adapter, CameraRays, LightLedger, Map, Photons, SceneSize, Seconds, Statistics, write_statistics,
 };

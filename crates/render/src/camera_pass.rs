@@ -7,6 +7,7 @@ use crate::{
     Error, Film, LayerImage,
     features::{Features, Pipelines},
     film::filter_inverse_cdf,
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
@@ -140,14 +141,20 @@ impl Samples {
         Ok(Sightings { list: gpu.read(&sightings, 0..paths)?, pixels })
     }
 
-    /// What samples accumulate in.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 4] {
-        [&self.film, &self.layers.light, &self.layers.data, &self.layers.groups]
+    /// What samples accumulate in, by name.
+    pub fn accumulated(&self) -> [(&'static str, &wgpu::Buffer); 4] {
+        let LayerSums { light, data, groups, .. } = &self.layers;
+        [("film", &self.film), ("layers of light", light), ("layers of data", data), ("layers of groups", groups)]
+    }
+
+    /// Adds what samples depend on beside the scene: the view and how it is sampled.
+    pub fn add_to(&self, fingerprint: &mut Fingerprint) {
+        fingerprint.digest("the camera and its settings", &[self.template]);
     }
 
     /// Bytes on the device.
     pub fn bytes(&self) -> u64 {
-        self.buffers().iter().map(|buffer| buffer.size()).sum()
+        self.accumulated().iter().map(|(_, buffer)| buffer.size()).sum()
     }
 
     /// Submits one sample of every pixel.

@@ -37,6 +37,12 @@ fn irradiance_entries(groups: u64) -> u64 {
     if groups > 1 { 1 + groups } else { 1 }
 }
 
+/// Bytes that a texel takes on the device: its sums, its area and its irradiance.
+pub(crate) fn bytes_of_texel(groups: usize) -> u64 {
+    let groups = groups as u64;
+    groups * TEXEL_BYTES + size_of::<f32>() as u64 + 16 * irradiance_entries(groups)
+}
+
 /// The maps of all objects on the device.
 #[derive(Debug)]
 pub(crate) struct EnergyMaps {
@@ -136,10 +142,9 @@ impl EnergyMaps {
         [&self.sums.low, &self.sums.high].map(|buffer| wgpu::BindingResource::Buffer(part(buffer)))
     }
 
-    /// Forgets all photons.
-    pub fn clear(&self, gpu: &Gpu) {
-        gpu.clear(&self.sums.low);
-        gpu.clear(&self.sums.high);
+    /// What photons accumulate in, by name.
+    pub fn accumulated(&self) -> [(&'static str, &wgpu::Buffer); 2] {
+        [("low words of energy maps", &self.sums.low), ("high words of energy maps", &self.sums.high)]
     }
 
     /// Reads one object's map. Blocks.

@@ -13,6 +13,7 @@ use crate::{
     Error, Guide, Ledger, LoopLimit, PilotReport,
     aim::{Block, Emission, blocks},
     features::{Features, Pipelines},
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     lights::{Emitter, Lights},
     map_plan::MapPlan,
@@ -249,6 +250,15 @@ impl Photons {
             ..PilotReport::default()
         };
         Ok(Flights { rounds: flights, report })
+    }
+
+    /// Adds what the photons depend on beside the scene: how they are aimed and guided.
+    pub fn add_to(&self, fingerprint: &mut Fingerprint) {
+        let none = Block { first: 0, count: 0, order: None };
+        let params: Vec<_> = self.lights.iter().map(|light| self.block_params(light, &none)).collect();
+        fingerprint.digest("how photons are emitted", &params);
+        let guides: Vec<_> = self.lights.iter().flat_map(|light| light.guide.records()).collect();
+        fingerprint.digest("how photons are guided", &guides);
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.

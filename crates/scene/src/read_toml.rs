@@ -1,8 +1,10 @@
 //! Reads scenes from TOML.
 
+mod animation;
 mod lights;
 mod materials;
 mod objects;
+mod overrides;
 mod refraction;
 mod shapes;
 mod table;
@@ -12,6 +14,7 @@ use std::{fs, path::Path};
 
 use glam::Vec3;
 
+pub use self::overrides::Override;
 use self::{
     lights::LightReader,
     materials::MaterialReader,
@@ -32,22 +35,32 @@ pub struct LoadedScene {
     pub warnings: Vec<Warning>,
 }
 
+/// How a scene file is read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneOptions {
+    /// Values in place of the file's, in order.
+    pub overrides: Vec<Override>,
+    /// The frame of the file's `[animation]` whose values count; if none, those outside of it.
+    pub frame: Option<u32>,
+    /// What may be read. It concerns what glTF and OBJ files name; the scene file itself may name files anywhere.
+    pub read: ReadOptions,
+}
+
 /// Reads a scene from a TOML file; the paths in it are relative to its folder.
 ///
 /// # Errors
 /// If the file or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
-    load_scene_with(path, ReadOptions::default())
+    load_scene_with(path, &SceneOptions::default())
 }
 
-/// Reads a scene as [`load_scene`] does, with options. They concern what glTF and OBJ files name; the scene file itself may name
-/// files anywhere.
+/// Reads a scene as [`load_scene`] does, with options.
 ///
 /// # Errors
-/// As [`load_scene`].
-pub fn load_scene_with(path: &Path, options: ReadOptions) -> Result<LoadedScene, Error> {
+/// As [`load_scene`], and if an override leads to no place in the file.
+pub fn load_scene_with(path: &Path, options: &SceneOptions) -> Result<LoadedScene, Error> {
     let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
-    parse(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
+    parse_scene_with(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
 }
 
 /// Reads a scene from TOML text. Relative paths in it start at `base_dir`; messages call the text `file_name`.
@@ -55,13 +68,38 @@ pub fn load_scene_with(path: &Path, options: ReadOptions) -> Result<LoadedScene,
 /// # Errors
 /// If the text or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<LoadedScene, Error> {
-    parse(text, base_dir, file_name, ReadOptions::default())
+    parse_scene_with(text, base_dir, file_name, &SceneOptions::default())
 }
 
-fn parse(text: &str, base_dir: &Path, file_name: &str, options: ReadOptions) -> Result<LoadedScene, Error> {
-    let document = Document::parse(text, file_name)?;
+/// Reads a scene as [`parse_scene`] does, with options.
+///
+/// # Errors
+/// As [`parse_scene`], if an override leads to no place in the text, and if a frame is asked for and the text has no `[animation]`.
+pub fn parse_scene_with(
+    text: &str,
+    base_dir: &Path,
+    file_name: &str,
+    options: &SceneOptions,
+) -> Result<LoadedScene, Error> {
+    let still = Document::parse(text, file_name, &options.overrides)?;
+    let mut overrides = options.overrides.clone();
+    let mut seed_offset = 0;
+    match (still.root().get("animation"), options.frame) {
+        (Some(entry), frame) => {
+            let table = entry.table("[animation]".to_owned(), "a table: [animation]")?;
+            let at_frame = animation::at_frame(&table, frame.unwrap_or(0))?;
+            if frame.is_some() {
+                overrides.extend(at_frame.overrides);
+                seed_offset = at_frame.seed_offset;
+            }
+        }
+        (None, Some(_)) => return Err(still.root().error("has no [animation], so it has no frames")),
+        (None, None) => {}
+    }
+    let document = Document::parse(text, file_name, &overrides)?;
     let sections = Sections::split(document.root())?;
-    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options)?;
+    let ReadScene { mut scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
+    scene.settings.seed = scene.settings.seed.wrapping_add(seed_offset);
     warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
     Ok(LoadedScene { scene, warnings })
 }
@@ -87,7 +125,17 @@ struct Sections<'d> {
 
 impl<'d> Sections<'d> {
     fn split(root: Table<'d>) -> Result<Self, Error> {
-        root.allow_only(&["background", "ambient", "camera", "render", "output", "materials", "lights", "objects"])?;
+        root.allow_only(&[
+            "background",
+            "ambient",
+            "animation",
+            "camera",
+            "render",
+            "output",
+            "materials",
+            "lights",
+            "objects",
+        ])?;
         let optional =
             |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
         Ok(Self {

@@ -252,6 +252,7 @@ const CASES: &[(&str, &str, &str)] = &[
         "x.toml:16:11: [render]: guiding: expected true or false, found the whole number 1",
     ),
     ("map_size = 1024", "map_size = 1", "x.toml:17:1: render: map_size is 1; it must be from 2 to 8192"),
+    ("map_size = 1024", "map_budget = 0", "x.toml:17:1: render: map_budget is 0; it must be from 1 to 65536 (MiB)"),
     (
         r#"filter = "box""#,
         r#"filter = "blackman_haris""#,

@@ -1,25 +1,9 @@
 //! The content of the statistics file.
 
-use std::time::Duration;
-
 use diacaustic::{Ledger, LightReport, MapSize, SceneReport, Statistics, scene::Scene, wgpu::AdapterInfo};
 use diacaustic_output as output;
 
-use crate::progress::rate;
-
-/// Wall-clock time of each stage but those that the renderer measures.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Times {
-    pub load: Duration,
-    pub device: Duration,
-    pub kernels: Duration,
-    /// The hierarchy, the maps and the upload together.
-    pub scene: Duration,
-    pub photons: Duration,
-    pub samples: Duration,
-    pub write: Duration,
-    pub total: Duration,
-}
+use crate::{progress::rate, session::Times};
 
 /// Everything that a statistics file tells.
 pub(crate) struct Report<'r> {
@@ -30,6 +14,7 @@ pub(crate) struct Report<'r> {
     pub counted: &'r Statistics,
     pub times: Times,
     pub time_limit_reached: bool,
+    pub interrupted: bool,
 }
 
 impl Report<'_> {
@@ -40,6 +25,7 @@ impl Report<'_> {
             scene: self.scene_file.clone(),
             seed: self.scene.settings.seed,
             time_limit_reached: self.time_limit_reached,
+            interrupted: self.interrupted,
             adapter: adapter(self.adapter),
             size: self.size(),
             seconds: self.seconds(),

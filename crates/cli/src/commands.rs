@@ -1,0 +1,5 @@
+//! The commands, each with its arguments beside it.
+
+pub mod completions;
+pub mod inspect;
+pub mod render;
