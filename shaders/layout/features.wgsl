@@ -15,6 +15,8 @@ override has_distant_lights: bool = true;
 override has_environment: bool = true;
 /// Whether surfaces show pictures.
 override has_textures: bool = true;
+/// Whether meshes have colours at their vertices.
+override has_vertex_colors: bool = true;
 /// Whether rays may pass surfaces as if they were not there.
 override has_holes: bool = true;
 /// Whether light has wavelengths.

@@ -105,6 +105,17 @@ shared_structs! {
         /// Unused.
         padding: [u32; 2],
     }
+    /// Factors on the colour of a triangle at its corners, in the order of the triangles: red and green, then blue, in half precision.
+    struct VertexColors {
+        /// That of the first corner.
+        color_0: [u32; 2],
+        /// That of the second corner.
+        color_1: [u32; 2],
+        /// That of the third corner.
+        color_2: [u32; 2],
+        /// Unused.
+        padding: [u32; 2],
+    }
     /// The pictures of a material: indices of SurfaceTexture records, or NONE.
     struct MaterialTextures {
         /// Factor on the material's colour.
@@ -184,7 +195,7 @@ shared_structs! {
         base: [f32; 3],
         /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER; from MATERIAL_GROUP_SHIFT on the index of its light group.
         kind: u32,
-        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
+        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal (of a textured surface that of what is no metal), Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
         specular: [f32; 3],
         /// Index of refraction; exponent of Phong's specular lobe.
         ior: f32,
@@ -522,7 +533,7 @@ pub mod material_kind {
     pub const CASTER: u32 = 0x100;
     /// Set where the surface has a diffuse lobe and an energy map.
     pub const RECEIVER: u32 = 0x200;
-    /// Set where pictures make the surface differ from point to point.
+    /// Set where pictures or vertex colours make the surface differ from point to point.
     pub const TEXTURED: u32 = 0x400;
     /// Where the index of the light group stands.
     pub const GROUP_SHIFT: u32 = 16;

@@ -21,6 +21,14 @@ pub enum Error {
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
+    /// What only a glTF file has is asked of a scene file.
+    #[error("{}: --{option} goes with a glTF file; in a scene file, give its [[objects]] the key {option}", path.display())]
+    GltfOption {
+        /// The scene file.
+        path: PathBuf,
+        /// The option, without its dashes.
+        option: &'static str,
+    },
     /// Frames are asked for, and the scene is glTF.
     #[error("{}: --frames goes with a scene file (.toml) that has an [animation], and this is a glTF file", .0.display())]
     FramesOfGltf(PathBuf),
@@ -79,7 +87,7 @@ impl Error {
     pub fn exit_status(&self) -> u8 {
         use diacaustic::Error as Render;
         match self {
-            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) => 2,
+            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::GltfOption { .. } => 2,
             Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } => 2,
             Self::Interrupted { signal } | Self::BakeInterrupted { signal } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use diacaustic::scene::{
-    Error as SceneError, LoadedScene, Override, ReadOptions, SceneOptions, StudioOptions, load_gltf_scene,
+    Error as SceneError, GltfOptions, LoadedScene, Override, ReadOptions, SceneOptions, StudioOptions, load_gltf_scene,
     load_scene_with,
 };
 
@@ -29,6 +29,18 @@ pub struct SceneArguments {
     /// Lay a matt floor under a glTF file's scene, which catches its caustics
     #[arg(long)]
     pub floor: bool,
+
+    /// Pose a glTF file's scene as its animation has it at this time
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+
+    /// The animation of a glTF file, by name or by number from 0; without it the first, if a time is given
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+
+    /// The material variant of a glTF file, by name
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
 
     /// Read files that a glTF or OBJ file names outside its own folder
     #[arg(long)]
@@ -77,13 +89,23 @@ impl SceneArguments {
             if let Some(first) = self.overrides.first() {
                 return Err(Error::OverrideOfGltf { scene: self.scene.clone(), path: first.path() });
             }
-            let mut loaded = load_gltf_scene(&self.scene, &StudioOptions { floor: self.floor, read })?;
+            let Self { time, animation, variant, .. } = self.clone();
+            let options = StudioOptions { floor: self.floor, file: GltfOptions { read, time, animation, variant } };
+            let mut loaded = load_gltf_scene(&self.scene, &options)?;
             let settings = &mut loaded.scene.settings;
             settings.seed = self.seed.unwrap_or(settings.seed);
             return Ok(loaded);
         }
         if self.floor {
             return Err(Error::FloorOfSceneFile(self.scene.clone()));
+        }
+        let gltf_options = [
+            ("time", self.time.is_some()),
+            ("animation", self.animation.is_some()),
+            ("variant", self.variant.is_some()),
+        ];
+        if let Some((option, _)) = gltf_options.iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::GltfOption { path: self.scene.clone(), option });
         }
         let mut overrides = self.overrides.clone();
         // Each frame may have a seed of its own that begins with it.

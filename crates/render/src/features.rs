@@ -26,8 +26,10 @@ pub(crate) struct Features {
     distant_lights: bool,
     /// An environment.
     environment: bool,
-    /// Pictures on surfaces.
+    /// Pictures or colours that make surfaces differ from point to point.
     textures: bool,
+    /// Colours at vertices.
+    vertex_colors: bool,
     /// Surfaces that rays may pass as if they were not there.
     holes: bool,
     /// Light of single wavelengths.
@@ -59,7 +61,8 @@ impl Features {
             surface_lights: shines(&[light_kind::SURFACE]),
             distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
             environment: shines(&[light_kind::ENVIRONMENT]),
-            textures: scene.materials.iter().any(|material| material.textures.any()),
+            textures: scene.has_vertex_colors() || scene.materials.iter().any(|material| material.textures.any()),
+            vertex_colors: scene.has_vertex_colors(),
             holes: scene.materials.iter().any(Material::has_holes),
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
@@ -74,10 +77,10 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
-        let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
+        let Self { gloss, conductors, textures, vertex_colors, holes, dispersion, .. } = self;
         let RenderSettings { guiding: guide, footprints, .. } = *settings;
         let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
-        Self { gloss, conductors, textures, holes, dispersion, ..photons }
+        Self { gloss, conductors, textures, vertex_colors, holes, dispersion, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -100,6 +103,7 @@ impl Features {
             ("has_distant_lights", f64::from(self.distant_lights)),
             ("has_environment", f64::from(self.environment)),
             ("has_textures", f64::from(self.textures)),
+            ("has_vertex_colors", f64::from(self.vertex_colors)),
             ("has_holes", f64::from(self.holes)),
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),

@@ -105,6 +105,7 @@ mod spectra_records;
 mod statistics;
 mod texture_records;
 mod tile_choice;
+mod vertex_color_records;
 
 pub use aim::Emission;
 pub use bake::{BakeOptions, Lightmap, SurfacePlace, base_reflectance};

@@ -19,10 +19,11 @@ use crate::{
     material_records::material,
     spectra_records::spectra_record,
     texture_records::TextureRecords,
+    vertex_color_records::{colored_materials, vertex_colors},
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 13] = [Binding::Records; 13];
+pub(crate) const BINDINGS: [Binding; 14] = [Binding::Records; 14];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -34,6 +35,7 @@ const EMITTING_TRIANGLES: Purpose = Purpose { what: "the triangles that shine", 
 const ENVIRONMENT: Purpose = Purpose { what: "the environment's picture", remedy: "use a smaller picture" };
 
 const COORDINATES: Purpose = Purpose { what: "the triangles' texture coordinates", remedy: "use fewer triangles" };
+const COLORS: Purpose = Purpose { what: "the triangles' vertex colours", remedy: "use fewer triangles" };
 const TEXTURES: Purpose = Purpose { what: "the list of textures", remedy: "use fewer textures" };
 const TEXELS: Purpose = Purpose { what: "the textures' pictures", remedy: "use smaller pictures" };
 
@@ -79,7 +81,9 @@ impl SceneBuffers {
             .collect();
         let blank: Vec<_> = maps.iter().map(|plan| plan.as_ref().map(blank_tiles)).collect();
         let blank = map_records(blank.iter().map(|tiles| tiles.as_ref().map(|tiles| (tiles, 0))));
-        let mut materials: Vec<_> = (0..scene.materials.len()).map(|index| material(scene, index)).collect();
+        let colored = colored_materials(scene);
+        let mut materials: Vec<_> =
+            colored.iter().enumerate().map(|(index, colored)| material(scene, index, *colored)).collect();
         for (order, (index, _)) in emissive_materials(scene).into_iter().enumerate() {
             materials[index].emission_pdf_area = lights.pdf_area(scene.lights.len() + order);
             materials[index].kind |= (lights.groups.of_materials[index] as u32) << material_kind::GROUP_SHIFT;
@@ -102,6 +106,7 @@ impl SceneBuffers {
             uploader.records(TEXTURES, &pictures.textures)?,
             uploader.records(TEXELS, &pictures.texels)?,
             uploader.records(SPECTRA, &spectra_record(scene))?,
+            uploader.records(COLORS, &vertex_colors(scene, &bvh.triangles))?,
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));

@@ -6,6 +6,7 @@ mod materials;
 mod objects;
 mod overrides;
 mod refraction;
+mod shapes;
 mod table;
 mod textures;
 

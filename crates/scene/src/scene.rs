@@ -49,6 +49,11 @@ impl Scene {
         let mut shown = self.objects.iter().flat_map(|object| &object.materials);
         self.settings.wavelength.is_some() || shown.any(|&index| self.materials[index].dispersion().is_some())
     }
+
+    /// Whether some mesh has colours at its vertices.
+    pub fn has_vertex_colors(&self) -> bool {
+        self.objects.iter().any(|object| !object.mesh.colors.is_empty())
+    }
 }
 
 impl Object {

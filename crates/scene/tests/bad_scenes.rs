@@ -423,8 +423,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ),
     (
         "sphere = { center = [0, 0.4, 0], radius = 0.3, subdivisions = 4 }",
-        r#"mesh = "a.stl""#,
-        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.stl; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb"#,
+        r#"mesh = "a.off""#,
+        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.off; meshes are read from OBJ, PLY, STL and glTF files, whose names end in .obj, .ply, .stl, .gltf or .glb"#,
     ),
     (
         "rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }",
@@ -459,7 +459,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         r#"name = "ground""#,
         r#"nam = "ground""#,
-        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, map_uvs"#,
+        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         r#"material = "floor""#,
@@ -504,7 +504,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "rotate = [0, 45, 0]",
         "rotation = [0, 45, 0]",
-        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, map_uvs"#,
+        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         "scale = 1.5",

@@ -88,7 +88,7 @@ pub(super) mod tests {
     fn all_flags_are_read() {
         let read = parse(
             "a.toml --set render.width=8 --output a.exr --output a.png --stats s.json --energy-maps maps \
-             --photons 1_000_000 --samples 8 --seed 7 --time-limit 2.5 --floor --allow-outside --quiet \
+             --photons 1_000_000 --samples 8 --seed 7 --time-limit 2.5 --floor --time -1.5 --animation walk --variant red --allow-outside --quiet \
              --adapter llvm --device-memory 1GiB --checkpoint c --every 1min --resume r"
                 .split_whitespace(),
         );
@@ -99,6 +99,9 @@ pub(super) mod tests {
                     overrides: vec!["render.width=8".parse().unwrap()],
                     seed: Some(7),
                     floor: true,
+                    time: Some(-1.5),
+                    animation: Some("walk".into()),
+                    variant: Some("red".into()),
                     allow_outside: true,
                 },
                 device: DeviceArguments { adapter: Some("llvm".parse().unwrap()), device_memory: Some(1 << 30) },
