@@ -10,7 +10,7 @@ pub use layout::{
     MaterialTextures, NONE, Object, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
     SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SurfaceTexture,
     TextureCoordinates, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger, light_kind, light_layer, material_kind,
-    texture_flag, triangle_flag,
+    paper_refraction, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.

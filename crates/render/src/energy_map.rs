@@ -67,7 +67,8 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
 
 /// Texels along the longer side of an object's map: the scene's choice, or half a pixel's footprint.
 fn chosen_size(scene: &Scene, object: &Object) -> u32 {
-    let stated = object.map_size.or(scene.settings.map_size);
+    let of_paper = scene.settings.paper.map(|profile| profile.map_size.texels(object));
+    let stated = of_paper.or(object.map_size).or(scene.settings.map_size);
     stated.unwrap_or_else(|| default_size(&scene.camera, &scene.settings, object))
 }
 
@@ -97,7 +98,8 @@ const SMALLEST_MAP: u64 = 64;
 /// Halves the largest map whose size nobody chose until all fit.
 fn shrink_to_budget(scene: &Scene, layouts: &mut [Option<MapLayout>], budget: u64) {
     let mut total: u64 = layouts.iter().flatten().map(MapLayout::texel_count).sum();
-    let is_free = |index: usize| scene.objects[index].map_size.or(scene.settings.map_size).is_none();
+    let all_stated = scene.settings.map_size.is_some() || scene.settings.paper.is_some();
+    let is_free = |index: usize| !all_stated && scene.objects[index].map_size.is_none();
     let sized = layouts.iter().enumerate().filter_map(|(index, layout)| Some((layout.as_ref()?.texel_count(), index)));
     let mut largest_first: BinaryHeap<_> = sized.filter(|&(_, index)| is_free(index)).collect();
     while total * TEXEL_BYTES > budget {
@@ -227,6 +229,7 @@ impl EnergyMaps {
             areas: placement.areas.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,
+            per_photon: true,
         }))
     }
 }
@@ -242,21 +245,24 @@ pub struct EnergyMap {
     pub layers: u32,
     /// Fixed-point sums of flux, layer by layer and row by row: integers, so that equal photons give equal sums in any order.
     pub sums: Vec<[i64; 3]>,
-    /// Area of each texel of one layer, m².
+    /// Area of each texel of one layer, m²; in the profile `paper`, the size that its sums are divided by.
     pub areas: Vec<f64>,
     /// Units of the sums in a watt.
     pub units_per_watt: f64,
     /// Photons that the sums are of, over every light.
     pub photons: u64,
+    /// Whether photons share the light's flux: not in the profile `paper`, in which each has an energy of its own.
+    pub per_photon: bool,
 }
 
 impl EnergyMap {
-    /// Flux collected by a texel, W.
+    /// Flux collected by a texel, W; in the profile `paper`, energy.
     ///
     /// # Panics
     /// If `texel` is out of range.
     pub fn flux(&self, texel: usize) -> DVec3 {
-        DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * self.photons.max(1) as f64)
+        let photons = if self.per_photon { self.photons.max(1) } else { 1 };
+        DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * photons as f64)
     }
 
     /// Irradiance of a texel, W/m²; 0 where it holds no surface.

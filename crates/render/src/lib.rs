@@ -36,6 +36,7 @@ mod host_scene;
 mod layers;
 mod lights;
 mod material_records;
+mod paper;
 mod photon_pass;
 mod pilot;
 mod random;

@@ -196,7 +196,9 @@ impl Renderer {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         if on_device.unresolved {
             let units = on_device.photons.units_per_watt;
-            self.resolve_pass.run(&self.gpu, &on_device.maps, units, on_device.photon_count);
+            // In the profile `paper` photons do not share the light's flux.
+            let sharing = if on_device.scene.settings.paper.is_some() { 1 } else { on_device.photon_count };
+            self.resolve_pass.run(&self.gpu, &on_device.maps, units, sharing);
             on_device.unresolved = false;
         }
         for number in 1..=count {
@@ -251,7 +253,9 @@ impl Renderer {
             return Err(Error::NoSuchObject { index: object, count });
         }
         let units = on_device.photons.units_per_watt;
-        on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
+        let map = on_device.maps.read(&self.gpu, object, units, on_device.photon_count)?;
+        let per_photon = on_device.scene.settings.paper.is_none();
+        Ok(map.map(|map| EnergyMap { per_photon, ..map }))
     }
 
     /// Reads what the device has counted. Blocks until all submitted work is done.

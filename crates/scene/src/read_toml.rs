@@ -3,6 +3,7 @@
 mod lights;
 mod materials;
 mod objects;
+mod paper;
 mod refraction;
 mod table;
 mod textures;
@@ -15,6 +16,7 @@ use self::{
     lights::LightReader,
     materials::MaterialReader,
     objects::ObjectReader,
+    paper::{is_paper, read_paper},
     table::{Document, Table},
 };
 use crate::{
@@ -79,6 +81,7 @@ struct Sections<'d> {
     camera: Table<'d>,
     render: Option<Table<'d>>,
     output: Option<Table<'d>>,
+    paper: Option<Table<'d>>,
     materials: Vec<(String, Table<'d>)>,
     lights: Vec<Table<'d>>,
     objects: Vec<Table<'d>>,
@@ -86,13 +89,24 @@ struct Sections<'d> {
 
 impl<'d> Sections<'d> {
     fn split(root: Table<'d>) -> Result<Self, Error> {
-        root.allow_only(&["background", "ambient", "camera", "render", "output", "materials", "lights", "objects"])?;
+        root.allow_only(&[
+            "background",
+            "ambient",
+            "camera",
+            "render",
+            "output",
+            "paper",
+            "materials",
+            "lights",
+            "objects",
+        ])?;
         let optional =
             |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
         Ok(Self {
             camera: root.require("camera", "a table: [camera]")?.table("[camera]".to_owned(), "a table: [camera]")?,
             render: optional("render", "a table: [render]")?,
             output: optional("output", "a table: [output]")?,
+            paper: optional("paper", "a table: [paper]")?,
             materials: named_tables(&root, "materials", "tables: [materials.a_name]")?,
             lights: listed_tables(&root, "lights", "an array of tables: [[lights]]")?,
             objects: listed_tables(&root, "objects", "an array of tables: [[objects]]")?,
@@ -107,7 +121,7 @@ impl<'d> Sections<'d> {
             background: color("background")?,
             ambient: color("ambient")?,
             camera: read_camera(&self.camera)?,
-            settings: self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default(),
+            settings: self.read_settings()?,
             output: self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default(),
             lights: LightReader::new(base_dir).read_all(&self.lights)?,
             materials: Vec::new(),
@@ -118,6 +132,24 @@ impl<'d> Sections<'d> {
         scene.objects = objects;
         scene.materials = reader.materials;
         Ok(ReadScene { scene, warnings: reader.warnings, tables_of_objects })
+    }
+
+    fn read_settings(&self) -> Result<RenderSettings, Error> {
+        let is_paper = self.render.as_ref().map_or(Ok(false), is_paper)?;
+        let default = match is_paper {
+            // What the paper has not: unset, it is off.
+            true => RenderSettings { guiding: false, max_bounces: 0, ..RenderSettings::default() },
+            false => RenderSettings::default(),
+        };
+        let settings = self.render.as_ref().map_or(Ok(default.clone()), |table| read_settings(table, default))?;
+        match &self.paper {
+            Some(table) if !is_paper => {
+                Err(table.error("counts only with profile = \"paper\" in [render]; set it, or leave [paper] out"))
+            }
+            table => {
+                Ok(RenderSettings { paper: is_paper.then(|| read_paper(table.as_ref())).transpose()?, ..settings })
+            }
+        }
     }
 
     /// Adds to an error of [`Scene::validate`] where the file sets what is at fault.
@@ -133,6 +165,7 @@ impl<'d> Sections<'d> {
             Subject::Camera => Some(&self.camera),
             Subject::Render => self.render.as_ref(),
             Subject::Output => self.output.as_ref(),
+            Subject::Paper => self.paper.as_ref(),
             Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),
             Subject::Light { index, .. } => self.lights.get(*index),
             Subject::Object { index, .. } => tables_of_objects.get(*index).and_then(|table| self.objects.get(*table)),
@@ -175,7 +208,7 @@ fn read_camera(table: &Table<'_>) -> Result<Camera, Error> {
     })
 }
 
-fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
+fn read_settings(table: &Table<'_>, default: RenderSettings) -> Result<RenderSettings, Error> {
     table.allow_only(&[
         "width",
         "height",
@@ -189,8 +222,8 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "map_size",
         "filter",
         "wavelength",
+        "profile",
     ])?;
-    let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
     let filters = [("box", PixelFilter::Box), ("blackman-harris", PixelFilter::BlackmanHarris)];
     Ok(RenderSettings {
@@ -206,6 +239,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         map_size: table.get("map_size").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
         wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
+        paper: None,
     })
 }
 
