@@ -7,7 +7,7 @@ mod layout;
 
 pub use layout::{
     AimTarget, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light, MAX_AIM_TARGETS, Material,
-    MaterialTextures, NONE, Object, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
+    MaterialTextures, NONE, Object, PathParams, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
     SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SurfaceTexture,
     TextureCoordinates, Triangle, TriangleCorners, WAVELENGTH_STEPS, ledger, light_kind, light_layer, material_kind,
     paper_refraction, texture_flag, triangle_flag,
