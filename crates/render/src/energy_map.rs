@@ -32,6 +32,15 @@ pub(crate) struct MapPlacement {
     pub first_texel: u64,
     /// Area of each texel of one layer, m².
     pub areas: Vec<f64>,
+    /// What sums are divided by in place of areas, in the profile `paper`.
+    pub paper_size: Option<f64>,
+}
+
+impl MapPlacement {
+    /// What the sums of one layer's texels are divided by; 0 where there is no surface.
+    fn divisors(&self) -> impl Iterator<Item = f32> {
+        self.areas.iter().map(|&area| if area > 0.0 { self.paper_size.unwrap_or(area) as f32 } else { 0.0 })
+    }
 }
 
 /// Whether an object has an energy map: some triangle of it is a receiver.
@@ -47,6 +56,7 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
         .map(|object| is_receiver(scene, object).then(|| MapLayout::new(object, chosen_size(scene, object))))
         .collect();
     shrink_to_budget(scene, &mut layouts, budget);
+    let paper_size = scene.settings.paper.map(|profile| profile.map_size.divisor());
     let mut first_texel = 0;
     let mut chunks = triangles.chunk_by(|a, b| a.object == b.object).peekable();
     layouts
@@ -57,7 +67,7 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
             layout.map(|layout| {
                 let receivers: Vec<_> =
                     own.iter().filter(|t| scene.materials[t.material as usize].is_receiver()).copied().collect();
-                let placement = MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout };
+                let placement = MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout, paper_size };
                 first_texel += placement.layout.texel_count();
                 placement
             })
@@ -173,8 +183,7 @@ impl EnergyMaps {
         let areas: Vec<f32> = placements
             .iter()
             .flatten()
-            .flat_map(|map| std::iter::repeat_n(&map.areas, map.layout.layers as usize).flatten())
-            .map(|&area| area as f32)
+            .flat_map(|map| std::iter::repeat_n(map, map.layout.layers as usize).flat_map(MapPlacement::divisors))
             .collect();
         let sums = gpu.zeroed(purpose, sums_bytes)?;
         let areas = gpu.filled(AREAS, &areas)?;
@@ -229,7 +238,7 @@ impl EnergyMaps {
             areas: placement.areas.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,
-            per_photon: true,
+            paper_size: placement.paper_size,
         }))
     }
 }
@@ -245,14 +254,15 @@ pub struct EnergyMap {
     pub layers: u32,
     /// Fixed-point sums of flux, layer by layer and row by row: integers, so that equal photons give equal sums in any order.
     pub sums: Vec<[i64; 3]>,
-    /// Area of each texel of one layer, m²; in the profile `paper`, the size that its sums are divided by.
+    /// Area of each texel of one layer, m².
     pub areas: Vec<f64>,
     /// Units of the sums in a watt.
     pub units_per_watt: f64,
     /// Photons that the sums are of, over every light.
     pub photons: u64,
-    /// Whether photons share the light's flux: not in the profile `paper`, in which each has an energy of its own.
-    pub per_photon: bool,
+    /// The size of the map by which the profile `paper` divides sums of energy, of which each photon brings the same, however many there are;
+    /// none where photons share the light's flux.
+    pub paper_size: Option<f64>,
 }
 
 impl EnergyMap {
@@ -261,17 +271,17 @@ impl EnergyMap {
     /// # Panics
     /// If `texel` is out of range.
     pub fn flux(&self, texel: usize) -> DVec3 {
-        let photons = if self.per_photon { self.photons.max(1) } else { 1 };
+        let photons = if self.paper_size.is_some() { 1 } else { self.photons.max(1) };
         DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * photons as f64)
     }
 
-    /// Irradiance of a texel, W/m²; 0 where it holds no surface.
+    /// Irradiance of a texel, W/m²; 0 where it holds no surface. In the profile `paper`, energy over the map's size.
     ///
     /// # Panics
     /// If `texel` is out of range.
     pub fn irradiance(&self, texel: usize) -> DVec3 {
         let area = self.areas[texel % self.areas.len()];
-        if area > 0.0 { self.flux(texel) / area } else { DVec3::ZERO }
+        if area > 0.0 { self.flux(texel) / self.paper_size.unwrap_or(area) } else { DVec3::ZERO }
     }
 
     /// Adds the photons of another run of the same scene and seed: the sums of photons 0 to N and N to M are those of 0 to M.

@@ -48,13 +48,12 @@ impl HostScene {
         let start = Instant::now();
         // Each light group has maps of its own.
         let map_budget = map_budget / kept_groups(scene).names.len() as u64;
-        let mut placements = place_maps(scene, &triangles[..of_objects], map_budget);
+        let placements = place_maps(scene, &triangles[..of_objects], map_budget);
         let maps_time = start.elapsed();
 
         let around = scene_bounds(scene, &triangles);
         let mut lights = Lights::new(scene, &bvh.triangles, &around);
         if let Some(profile) = &scene.settings.paper {
-            paper::divide_by_size(profile, &mut placements);
             paper::set_pole(profile, &mut lights);
         }
         Ok(Self {

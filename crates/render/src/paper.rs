@@ -5,7 +5,7 @@ use diacaustic_shaders as shaders;
 use diacaustic_surface::BoundingSphere;
 use glam::Vec3;
 
-use crate::{Emission, energy_map::MapPlacement, lights::Lights};
+use crate::{Emission, lights::Lights};
 
 /// How the light emits; none if there is nothing that casts light on.
 pub(crate) fn emission(profile: &PaperProfile, casters: &[BoundingSphere]) -> Option<Emission> {
@@ -18,14 +18,6 @@ pub(crate) fn grid_side(profile: &PaperProfile, settings: &RenderSettings) -> u3
         // The scene is valid: it has at most 2³² − 1 photons.
         PaperSampling::Grid => settings.photons.isqrt() as u32,
         PaperSampling::Random => 0,
-    }
-}
-
-/// Puts the size of the paper's maps in place of the texels' areas, so that sums are divided by it.
-pub(crate) fn divide_by_size(profile: &PaperProfile, placements: &mut [Option<MapPlacement>]) {
-    let divisor = profile.map_size.divisor();
-    for area in placements.iter_mut().flatten().flat_map(|placement| &mut placement.areas) {
-        *area = if *area > 0.0 { divisor } else { 0.0 };
     }
 }
 

@@ -253,9 +253,7 @@ impl Renderer {
             return Err(Error::NoSuchObject { index: object, count });
         }
         let units = on_device.photons.units_per_watt;
-        let map = on_device.maps.read(&self.gpu, object, units, on_device.photon_count)?;
-        let per_photon = on_device.scene.settings.paper.is_none();
-        Ok(map.map(|map| EnergyMap { per_photon, ..map }))
+        on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
     }
 
     /// Reads what the device has counted. Blocks until all submitted work is done.

@@ -1,0 +1,66 @@
+//! What can go wrong.
+
+use std::{io, path::PathBuf};
+
+/// Why an experiment did not come about. Each message names the file and the part of it at fault.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The experiment file cannot be read.
+    #[error("{}: the file cannot be read: {cause}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// The experiment file is not TOML, or has keys or values that mean nothing.
+    #[error("{}:{line}:{column}: {problem}", path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// The column in characters, from 1.
+        column: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A part of the experiment makes no sense.
+    #[error("{}: {part}: {problem}", path.display())]
+    Invalid {
+        /// The file.
+        path: PathBuf,
+        /// The table, finding or plot.
+        part: String,
+        /// What is wrong, and what would be right.
+        problem: String,
+    },
+    /// The scene of a cell cannot be read.
+    #[error("the scene of {cell}: {cause}")]
+    Scene {
+        /// The table, row, column and model.
+        cell: String,
+        /// Why.
+        cause: diacaustic::scene::Error,
+    },
+    /// The scene of a cell cannot be rendered.
+    #[error("the scene of {cell}: {cause}")]
+    Render {
+        /// The table, row, column and model.
+        cell: String,
+        /// Why.
+        cause: diacaustic::Error,
+    },
+    /// A folder cannot be made.
+    #[error("{}: the folder cannot be made: {cause}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What the system says.
+        cause: io::Error,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Output(#[from] diacaustic_output::Error),
+}
