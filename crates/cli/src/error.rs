@@ -21,6 +21,17 @@ pub enum Error {
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
+    /// A value of a scene file is to be changed, and the scene is glTF.
+    #[error(
+        "{}: --set {path} goes with a scene file (.toml), and this is a glTF file; write one that names it: mesh = \"{}\"",
+        scene.display(), scene.display()
+    )]
+    OverrideOfGltf {
+        /// The glTF file.
+        scene: PathBuf,
+        /// The keys of the first override.
+        path: String,
+    },
     /// One file would be written over another.
     #[error("{}: named twice; name a file of its own for each output, and not the scene", .0.display())]
     NamedTwice(PathBuf),
@@ -31,7 +42,7 @@ impl Error {
     pub fn exit_status(&self) -> u8 {
         use diacaustic::Error as Render;
         match self {
-            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) => 2,
+            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::OverrideOfGltf { .. } => 2,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
             Self::Render(_) | Self::Device(_) | Self::Output(_) => 1,

@@ -3,14 +3,12 @@
 //! A library so that tests reach its parts; the binary `diacaustic` only calls [`main`].
 
 mod arguments;
-mod chunks;
+pub mod commands;
 mod error;
-mod outputs;
-mod pictures;
+mod numbers;
 mod progress;
-mod report;
-mod run;
-mod warnings;
+mod scene_arguments;
+mod session;
 
 use std::{
     error::Error as _,
@@ -19,22 +17,25 @@ use std::{
     process::ExitCode,
 };
 
-use clap::Parser as _;
-
-pub use arguments::Arguments;
+pub use arguments::Command;
 pub use error::Error;
-pub use run::run;
+pub use scene_arguments::SceneArguments;
+pub use session::SessionArguments;
 
 /// Runs the command with the arguments of a process, the program's name first, and reports errors on the standard error.
 ///
 /// The exit status is 0 when everything is written, 2 when the arguments or the scene are wrong, and 1 when the device or
 /// a file fails. Blocks until then.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => arguments,
+    let command = match Command::parse(arguments) {
+        Ok(command) => command,
         Err(message) => return show_usage(&message),
     };
-    match run(&arguments) {
+    let done = match command {
+        Command::Render(arguments) => commands::render::run(&arguments),
+        Command::Inspect(arguments) => commands::inspect::run(&arguments),
+    };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             show_error(&error);

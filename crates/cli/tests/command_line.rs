@@ -246,6 +246,37 @@ fn equal_runs_are_equal_to_the_byte_and_other_seeds_are_not() {
 }
 
 #[test]
+fn overrides_change_the_scene_as_its_file_would() {
+    let render = |scene: &str, flags: &[&str]| {
+        let workplace = Workplace::new(scene);
+        workplace.render(&[&["--output", "a.exr"], flags].concat());
+        fs::read(workplace.path("a.exr")).unwrap()
+    };
+    let changed = BALL.replace("ior = 1.5", "ior = 1.8").replace("samples = 2", "samples = 3");
+    assert!(render(BALL, &["--set", "materials.glass.ior=1.8", "--set", "render.samples=3"]) == render(&changed, &[]));
+    assert!(render(BALL, &[]) != render(&changed, &[]), "the comparison cannot fail");
+}
+
+#[test]
+fn inspect_tells_what_a_scene_holds_without_a_device() {
+    let workplace = Workplace::new(BALL);
+    let outcome = workplace.run_without_adapter(&["inspect", "scene.toml", "--set", "render.width=99"]);
+    assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+    for text in [
+        "picture: 99 × 64, 2 samples, 20000 photons, seed 0",
+        "objects: 2, with 3970 triangles",
+        "ball: 3968 triangles, closed, 0.6000 × 0.6000 × 0.6000 m around [0.0000, 0.4000, 0.0000]; glass",
+        "floor: 2 triangles, 4 open edges, 4.0000 × 0.0000 × 4.0000 m",
+        "glass: dielectric, index 1.5; casts light on",
+        "plaster: diffuse; receives light",
+        "lamp: sphere of radius 0.05 m, [35, 35, 35] W",
+    ] {
+        assert!(outcome.stdout.contains(text), "{text:?} is missing in: {}", outcome.stdout);
+    }
+    assert_eq!(workplace.files(), ["scene.toml"]);
+}
+
+#[test]
 fn quiet_prints_nothing_but_errors() {
     let workplace = Workplace::new(&BALL.replace("dielectric\", ior = 1.5", "diffuse\", albedo = 0.5"));
     assert_eq!(workplace.render(&["--quiet"]).stderr, "");
@@ -282,8 +313,13 @@ fn wrong_scenes_exit_with_2_and_name_file_and_key() {
 #[test]
 fn wrong_arguments_exit_with_2_and_name_what_is_wrong() {
     let workplace = Workplace::new(BALL);
-    let cases: [(&[&str], &[&str]); 7] = [
+    let cases: [(&[&str], &[&str]); 12] = [
         (&[], &["<SCENE>"]),
+        (&["render"], &["<SCENE>"]),
+        (&["inspect", "missing.toml"], &["missing.toml", "cannot be read"]),
+        (&["scene.toml", "--set", "render.samples"], &["--set", "expected KEY=VALUE"]),
+        (&["scene.toml", "--set", "materials.glas.ior=2"], &["materials has no \"glas\"", "did you mean \"glass\"?"]),
+        (&["a.glb", "--set", "render.samples=2"], &["--set render.samples goes with a scene file", "mesh = \"a.glb\""]),
         (&["missing.toml"], &["missing.toml", "cannot be read"]),
         (&["scene.toml", "--photon", "9"], &["--photon", "--photons"]),
         (&["scene.toml", "--samples", "0"], &["--samples", "from 1 to"]),

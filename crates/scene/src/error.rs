@@ -2,20 +2,23 @@
 
 use std::{fmt, io, path::PathBuf, sync::Arc};
 
-/// A place in a text file.
+/// A place in a text file, or an override.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Location {
-    /// The file's name, as the caller gave it.
+    /// The file's name, as the caller gave it; of an override what it says.
     pub file: Arc<str>,
-    /// The line, from 1.
+    /// The line, from 1; 0 of an override.
     pub line: u32,
-    /// The column in characters, from 1.
+    /// The column in characters, from 1; 0 of an override.
     pub column: u32,
 }
 
 impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}:{}", self.file, self.line, self.column)
+        match self.line {
+            0 => f.write_str(&self.file),
+            line => write!(f, "{}:{line}:{}", self.file, self.column),
+        }
     }
 }
 
@@ -89,6 +92,14 @@ pub enum Error {
         /// Where the reader stopped.
         at: Location,
         /// What it says.
+        problem: String,
+    },
+    /// An override makes no sense, or leads to no place in the scene file.
+    #[error("the override {path}: {problem}")]
+    Override {
+        /// Its keys, or all of it.
+        path: String,
+        /// What is wrong and what would be right.
         problem: String,
     },
     /// A table of the scene file has a key that means nothing there.

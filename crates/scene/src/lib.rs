@@ -83,7 +83,7 @@ pub use metals::{METALS, Metal, metal};
 pub use obj::{ObjFile, load_obj, parse_obj};
 pub use paper::{PaperMapSize, PaperProfile, PaperRefraction, PaperSampling, paper_direction_density};
 pub use radiance_map::RadianceMap;
-pub use read_toml::{LoadedScene, load_scene, load_scene_with, parse_scene};
+pub use read_toml::{LoadedScene, Override, SceneOptions, load_scene, load_scene_with, parse_scene, parse_scene_with};
 pub use scene::{Object, OutputSettings, PixelFilter, RenderSettings, Scene, ToneCurve};
 pub use spectrum::{
     LONGEST_WAVELENGTH, SHORTEST_WAVELENGTH, WAVELENGTH_STEPS, WavelengthEntry, number_of_wavelength, wavelength_table,

@@ -3,6 +3,7 @@
 mod lights;
 mod materials;
 mod objects;
+mod overrides;
 mod paper;
 mod refraction;
 mod table;
@@ -12,6 +13,7 @@ use std::{fs, path::Path};
 
 use glam::Vec3;
 
+pub use self::overrides::Override;
 use self::{
     lights::LightReader,
     materials::MaterialReader,
@@ -33,22 +35,30 @@ pub struct LoadedScene {
     pub warnings: Vec<Warning>,
 }
 
+/// How a scene file is read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneOptions {
+    /// Values in place of the file's, in order.
+    pub overrides: Vec<Override>,
+    /// What may be read. It concerns what glTF and OBJ files name; the scene file itself may name files anywhere.
+    pub read: ReadOptions,
+}
+
 /// Reads a scene from a TOML file; the paths in it are relative to its folder.
 ///
 /// # Errors
 /// If the file or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
-    load_scene_with(path, ReadOptions::default())
+    load_scene_with(path, &SceneOptions::default())
 }
 
-/// Reads a scene as [`load_scene`] does, with options. They concern what glTF and OBJ files name; the scene file itself may name
-/// files anywhere.
+/// Reads a scene as [`load_scene`] does, with options.
 ///
 /// # Errors
-/// As [`load_scene`].
-pub fn load_scene_with(path: &Path, options: ReadOptions) -> Result<LoadedScene, Error> {
+/// As [`load_scene`], and if an override leads to no place in the file.
+pub fn load_scene_with(path: &Path, options: &SceneOptions) -> Result<LoadedScene, Error> {
     let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
-    parse(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
+    parse_scene_with(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
 }
 
 /// Reads a scene from TOML text. Relative paths in it start at `base_dir`; messages call the text `file_name`.
@@ -56,13 +66,22 @@ pub fn load_scene_with(path: &Path, options: ReadOptions) -> Result<LoadedScene,
 /// # Errors
 /// If the text or a mesh or image that it names cannot be read or makes no sense, or if [`Scene::validate`] refuses the scene.
 pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<LoadedScene, Error> {
-    parse(text, base_dir, file_name, ReadOptions::default())
+    parse_scene_with(text, base_dir, file_name, &SceneOptions::default())
 }
 
-fn parse(text: &str, base_dir: &Path, file_name: &str, options: ReadOptions) -> Result<LoadedScene, Error> {
-    let document = Document::parse(text, file_name)?;
+/// Reads a scene as [`parse_scene`] does, with options.
+///
+/// # Errors
+/// As [`parse_scene`], and if an override leads to no place in the text.
+pub fn parse_scene_with(
+    text: &str,
+    base_dir: &Path,
+    file_name: &str,
+    options: &SceneOptions,
+) -> Result<LoadedScene, Error> {
+    let document = Document::parse(text, file_name, &options.overrides)?;
     let sections = Sections::split(document.root())?;
-    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options)?;
+    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
     warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
     Ok(LoadedScene { scene, warnings })
 }

@@ -8,29 +8,42 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
+use super::overrides::Override;
 use crate::{Error, Location, error::suggestion};
 
-/// A parsed TOML file.
+/// A parsed TOML file, with overrides.
 pub(super) struct Document<'d> {
     file: Arc<str>,
     text: &'d str,
+    /// Their values stand at the places that follow the end of the text, one each.
+    overrides: &'d [Override],
     root: Spanned<DeTable<'d>>,
 }
 
 impl<'d> Document<'d> {
-    pub(super) fn parse(text: &'d str, file: &str) -> Result<Self, Error> {
+    pub(super) fn parse(text: &'d str, file: &str, overrides: &'d [Override]) -> Result<Self, Error> {
         let file: Arc<str> = file.into();
-        match DeTable::parse(text) {
-            Ok(root) => Ok(Self { file, text, root }),
-            Err(error) => {
-                let at = location(&file, text, error.span().map_or(0, |span| span.start));
-                Err(Error::Syntax { at, problem: error.message().to_owned() })
-            }
+        let mut root = DeTable::parse(text).map_err(|error| {
+            let at = location(&file, text, error.span().map_or(0, |span| span.start));
+            Error::Syntax { at, problem: error.message().to_owned() }
+        })?;
+        for (number, changed) in overrides.iter().enumerate() {
+            changed.apply(&mut root, text.len() + 1 + number)?;
         }
+        Ok(Self { file, text, overrides, root })
     }
 
     pub(super) fn root(&'d self) -> Table<'d> {
         Table { document: self, entries: self.root.get_ref(), name: "the scene file".to_owned(), start: 0 }
+    }
+
+    /// The line and column of a byte of the text, or the override that stands for it.
+    fn location(&self, offset: usize) -> Location {
+        let beyond = offset.checked_sub(self.text.len() + 1);
+        match beyond.and_then(|number| self.overrides.get(number)) {
+            Some(changed) => Location { file: format!("the override {changed}").into(), line: 0, column: 0 },
+            None => location(&self.file, self.text, offset),
+        }
     }
 }
 
@@ -57,13 +70,13 @@ pub(super) struct Table<'d> {
 impl<'d> Table<'d> {
     /// Where the table begins.
     pub(super) fn location(&self) -> Location {
-        location(&self.document.file, self.document.text, self.start)
+        self.document.location(self.start)
     }
 
     /// Where a key stands, or the table if it has no such key.
     pub(super) fn location_of(&self, key: &str) -> Location {
         let offset = self.entries.iter().find(|(name, _)| name.get_ref() == key).map(|(name, _)| name.span().start);
-        location(&self.document.file, self.document.text, offset.unwrap_or(self.start))
+        self.document.location(offset.unwrap_or(self.start))
     }
 
     /// Appends to the name that messages give the table.
@@ -76,7 +89,7 @@ impl<'d> Table<'d> {
         let unknown = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         let Some(key) = unknown.min_by_key(|key| key.span().start) else { return Ok(()) };
         Err(Error::UnknownKey {
-            at: location(&self.document.file, self.document.text, key.span().start),
+            at: self.document.location(key.span().start),
             table: self.name.clone(),
             key: key.get_ref().to_string(),
             help: suggestion(key.get_ref(), known, "keys"),
@@ -147,7 +160,7 @@ impl<'d> Entry<'d> {
 
     /// Where the value stands.
     pub(super) fn location(&self) -> Location {
-        location(&self.document.file, self.document.text, self.value.span().start)
+        self.document.location(self.value.span().start)
     }
 
     /// The table and the key, as messages name them.

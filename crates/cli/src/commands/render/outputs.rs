@@ -7,7 +7,8 @@ use std::{
 
 use diacaustic_output::{EnergyMapFolder, Format, check_writable};
 
-use crate::{Arguments, Error};
+use super::RenderArguments;
+use crate::Error;
 
 /// The files of a run.
 #[derive(Debug)]
@@ -25,13 +26,13 @@ impl Outputs {
     ///
     /// # Errors
     /// If a picture's ending stands for no format, a file is named twice, or one cannot be written.
-    pub fn choose(arguments: &Arguments, of_scene: &[PathBuf]) -> Result<Self, Error> {
+    pub fn choose(arguments: &RenderArguments, of_scene: &[PathBuf]) -> Result<Self, Error> {
         let pictures = match (arguments.outputs.as_slice(), of_scene) {
-            ([], []) => vec![default_picture(&arguments.scene)],
+            ([], []) => vec![default_picture(&arguments.session.scene.scene)],
             ([], files) => files.to_vec(),
             (files, _) => files.to_vec(),
         };
-        let mut named = HashSet::from([comparable(&arguments.scene)]);
+        let mut named = HashSet::from([comparable(&arguments.session.scene.scene)]);
         for path in &pictures {
             Format::of(path)?;
         }
@@ -60,9 +61,7 @@ fn comparable(path: &Path) -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use clap::Parser as _;
-
-    use super::*;
+    use super::{super::arguments::tests::parse, *};
 
     fn choose(folder: &Path, flags: &[&str], of_scene: &[&str]) -> Result<Outputs, Error> {
         let scene = folder.join("a scene.toml").into_os_string();
@@ -70,9 +69,9 @@ mod tests {
             true => flag.into(),
             false => folder.join(flag).into_os_string(),
         };
-        let line = ["diacaustic".into(), scene].into_iter().chain(flags.iter().map(in_folder));
+        let line = [scene].into_iter().chain(flags.iter().map(in_folder));
         let of_scene: Vec<_> = of_scene.iter().map(|file| folder.join(file)).collect();
-        Outputs::choose(&Arguments::try_parse_from(line).unwrap(), &of_scene)
+        Outputs::choose(&parse(line).unwrap(), &of_scene)
     }
 
     #[test]

@@ -1,25 +1,9 @@
 //! The content of the statistics file.
 
-use std::time::Duration;
-
 use diacaustic::{Ledger, LightReport, MapSize, SceneReport, Statistics, scene::Scene, wgpu::AdapterInfo};
 use diacaustic_output as output;
 
-use crate::progress::rate;
-
-/// Wall-clock time of each stage but those that the renderer measures.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Times {
-    pub load: Duration,
-    pub device: Duration,
-    pub kernels: Duration,
-    /// The hierarchy, the maps and the upload together.
-    pub scene: Duration,
-    pub photons: Duration,
-    pub samples: Duration,
-    pub write: Duration,
-    pub total: Duration,
-}
+use crate::{progress::rate, session::Times};
 
 /// Everything that a statistics file tells.
 pub(crate) struct Report<'r> {

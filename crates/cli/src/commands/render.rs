@@ -1,0 +1,140 @@
+//! `diacaustic render`: from the scene to a picture.
+
+mod arguments;
+mod outputs;
+mod pictures;
+mod report;
+
+use std::{
+    fmt,
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use diacaustic::scene::{LoadedScene, OutputSettings, Scene, ToneCurve, Warning};
+use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, write_statistics};
+
+pub use self::arguments::RenderArguments;
+use self::{
+    outputs::Outputs,
+    pictures::{NO_LAYERS, can_hold_layers, write_pictures},
+    report::Report,
+};
+use crate::{
+    Error,
+    progress::{Progress, Seconds},
+    session::{Session, Times},
+};
+
+/// Renders the scene that the arguments name and writes the files that they ask for. Blocks until all is done; says on the
+/// standard error what happens.
+///
+/// # Errors
+/// If the scene cannot be read or rendered, there is no device, or a file cannot be written. What can be checked before
+/// rendering is.
+pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
+    let start = Instant::now();
+    let progress = Progress::new(arguments.session.quiet);
+    let scene_arguments = &arguments.session.scene;
+    let mut loaded = scene_arguments.load()?;
+    override_settings(&mut loaded.scene, arguments);
+    let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files)?;
+    warn(progress, arguments, &mut loaded, &outputs);
+    let times = Times { load: start.elapsed(), ..Times::default() };
+
+    let mut session = Session::open(progress, loaded, times)?;
+    let deadline = arguments.time_limit.and_then(|limit| start.checked_add(limit));
+    session.emit_photons(deadline)?;
+    session.add_samples(deadline)?;
+
+    let write_start = Instant::now();
+    let maps = write(&session, &mut outputs)?;
+    session.times.write = write_start.elapsed();
+    session.times.total = start.elapsed();
+    if let Some(path) = &outputs.statistics {
+        write_report(&session, path, &scene_arguments.scene)?;
+    }
+    progress.say(Written { outputs: &outputs, maps, time: start.elapsed() });
+    Ok(())
+}
+
+fn override_settings(scene: &mut Scene, arguments: &RenderArguments) {
+    let settings = &mut scene.settings;
+    settings.photons = arguments.photons.unwrap_or(settings.photons);
+    settings.samples = arguments.samples.unwrap_or(settings.samples);
+}
+
+/// Says what is odd about the scene; layers that no file takes are left out.
+fn warn(progress: Progress, arguments: &RenderArguments, loaded: &mut LoadedScene, outputs: &Outputs) {
+    for warning in &loaded.warnings {
+        progress.warn(warning);
+    }
+    if !loaded.scene.output.layers.is_empty() && !can_hold_layers(&outputs.pictures) {
+        progress.warn(NO_LAYERS);
+        loaded.scene.output.layers.clear();
+    }
+    if arguments.session.scene.is_gltf() && loaded.warnings.contains(&Warning::NoReceiver) {
+        progress.warn("--floor adds a floor, which shows caustics");
+    }
+}
+
+/// Writes pictures and energy maps; returns how many maps.
+fn write(session: &Session, outputs: &mut Outputs) -> Result<usize, Error> {
+    let film = session.renderer.film()?;
+    let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
+    write_pictures(&outputs.pictures, &picture, &session.renderer.layers()?, &display(&session.scene.output))?;
+    match &mut outputs.energy_maps {
+        Some(folder) => write_energy_maps(session, folder),
+        None => Ok(0),
+    }
+}
+
+fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<usize, Error> {
+    let mut count = 0;
+    for (index, object) in session.scene.objects.iter().enumerate() {
+        let Some(map) = session.renderer.energy_map(index)? else { continue };
+        let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
+        folder.write(&object.name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
+        count += 1;
+    }
+    Ok(count)
+}
+
+fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(), Error> {
+    let report = Report {
+        scene_file: scene_file.display().to_string(),
+        scene: &session.scene,
+        adapter: &session.gpu.adapter_info,
+        built: &session.built,
+        counted: &session.renderer.statistics()?,
+        times: session.times,
+        time_limit_reached: session.time_limit_reached,
+    };
+    Ok(write_statistics(path, &report.statistics())?)
+}
+
+fn display(output: &OutputSettings) -> Display {
+    let tone = match output.tone {
+        ToneCurve::Plain => Tone::Plain,
+        ToneCurve::Filmic => Tone::Filmic,
+    };
+    Display { exposure: output.exposure, tone }
+}
+
+/// The last line: what was written and in what time.
+struct Written<'w> {
+    outputs: &'w Outputs,
+    maps: usize,
+    time: Duration,
+}
+
+impl fmt::Display for Written<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let files = self.outputs.pictures.iter().chain(&self.outputs.statistics);
+        let mut names: Vec<_> = files.map(|path| path.display().to_string()).collect();
+        if self.outputs.energy_maps.is_some() {
+            names.push(format!("{} energy map{}", self.maps, if self.maps == 1 { "" } else { "s" }));
+        }
+        write!(f, "wrote {} in {}", names.join(", "), Seconds(self.time))
+    }
+}

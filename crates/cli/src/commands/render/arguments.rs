@@ -1,0 +1,95 @@
+//! The arguments of `render`.
+
+use std::{path::PathBuf, time::Duration};
+
+use crate::{
+    numbers::{parse_photons, parse_samples, parse_seconds},
+    session::SessionArguments,
+};
+
+/// What `render` takes.
+#[derive(Clone, Debug, PartialEq, clap::Args)]
+pub struct RenderArguments {
+    /// The scene and the device.
+    #[command(flatten)]
+    pub session: SessionArguments,
+
+    /// A picture to write; repeatable. The ending chooses the format: .exr (32-bit float radiance) or .png
+    ///
+    /// Without this option, the files that the scene names are written; if it names none, a PNG with the scene file's name in the
+    /// current folder (NAME.render.png for a .gltf file, whose own pictures may lie there).
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub outputs: Vec<PathBuf>,
+
+    /// Write statistics: a JSON of times, rays, photons and where the light went
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+
+    /// Write every object's energy map as an EXR, irradiance in W/m²; the folder is created where it is missing
+    #[arg(long, value_name = "DIR")]
+    pub energy_maps: Option<PathBuf>,
+
+    /// Photons in all, such as 1_000_000, in place of the scene's number
+    ///
+    /// Rounded up to a multiple of the sum of the lights' photon shares, so that each sends its share exactly.
+    #[arg(long, value_name = "N", value_parser = parse_photons)]
+    pub photons: Option<u64>,
+
+    /// Samples of each pixel, in place of the scene's number
+    #[arg(long, value_name = "N", value_parser = parse_samples)]
+    pub samples: Option<u32>,
+
+    /// Stop adding photons and samples after this time and write what there is
+    ///
+    /// Counted from the start of the program. Photons take at most half of what is left when they begin. There is always one batch
+    /// of photons and one sample, however short the time.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    pub time_limit: Option<Duration>,
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::ffi::OsString;
+
+    use clap::{Args as _, FromArgMatches as _};
+
+    use super::*;
+    use crate::scene_arguments::SceneArguments;
+
+    /// The arguments of a line, without the program's name.
+    pub(crate) fn parse(line: impl IntoIterator<Item = impl Into<OsString>>) -> Result<RenderArguments, clap::Error> {
+        let command = RenderArguments::augment_args(clap::Command::new("render").no_binary_name(true));
+        let line: Vec<OsString> = line.into_iter().map(Into::into).collect();
+        RenderArguments::from_arg_matches(&command.try_get_matches_from(line)?)
+    }
+
+    #[test]
+    fn all_flags_are_read() {
+        let read = parse(
+            "a.toml --set render.width=8 --output a.exr --output a.png --stats s.json --energy-maps maps \
+             --photons 1_000_000 --samples 8 --seed 7 --time-limit 2.5 --floor --allow-outside --quiet"
+                .split_whitespace(),
+        );
+        let expected = RenderArguments {
+            session: SessionArguments {
+                scene: SceneArguments {
+                    scene: "a.toml".into(),
+                    overrides: vec!["render.width=8".parse().unwrap()],
+                    seed: Some(7),
+                    floor: true,
+                    allow_outside: true,
+                },
+                quiet: true,
+            },
+            outputs: vec!["a.exr".into(), "a.png".into()],
+            stats: Some("s.json".into()),
+            energy_maps: Some("maps".into()),
+            photons: Some(1_000_000),
+            samples: Some(8),
+            time_limit: Some(Duration::from_millis(2500)),
+        };
+        assert_eq!(read.unwrap(), expected);
+        let bare = parse(["a.toml"]).unwrap();
+        assert_eq!((bare.outputs.len(), bare.photons, bare.time_limit, bare.session.quiet), (0, None, None, false));
+    }
+}

@@ -1,0 +1,52 @@
+//! Numbers as arguments.
+
+use std::time::Duration;
+
+pub(crate) fn parse_photons(text: &str) -> Result<u64, String> {
+    parse_whole(text, 0).map(u64::from)
+}
+
+pub(crate) fn parse_samples(text: &str) -> Result<u32, String> {
+    parse_whole(text, 1)
+}
+
+pub(crate) fn parse_seed(text: &str) -> Result<u32, String> {
+    parse_whole(text, 0)
+}
+
+/// A whole number in decimal digits, between which underscores may stand.
+fn parse_whole(text: &str, least: u32) -> Result<u32, String> {
+    let expected = || format!("expected a whole number from {least} to {}, such as 1000 or 1_000", u32::MAX);
+    let digits_at_ends =
+        [text.chars().next(), text.chars().last()].iter().all(|c| c.is_some_and(|c| c.is_ascii_digit()));
+    let value: u32 = text.replace('_', "").parse().map_err(|_| expected())?;
+    if digits_at_ends && value >= least { Ok(value) } else { Err(expected()) }
+}
+
+/// Seconds, without a unit.
+pub(crate) fn parse_seconds(text: &str) -> Result<Duration, String> {
+    positive(text, 1.0).ok_or_else(|| "expected a number of seconds greater than 0, such as 60 or 2.5".to_owned())
+}
+
+/// So many units of some seconds.
+fn positive(text: &str, unit: f64) -> Option<Duration> {
+    let number: f64 = text.parse().ok()?;
+    Duration::try_from_secs_f64(number * unit).ok().filter(|duration| !duration.is_zero())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_checked() {
+        for bad in ["1e6", "-1", "+1", "_1", "1_", "", "1.5", "4294967296", "ten", "1 000"] {
+            assert!(parse_photons(bad).is_err(), "{bad:?}");
+        }
+        assert_eq!((parse_photons("0"), parse_photons("4_294_967_295")), (Ok(0), Ok(u64::from(u32::MAX))));
+        assert!(parse_samples("0").unwrap_err().contains("from 1 to"));
+        for bad in ["0", "-1", "nan", "inf", "1e300", "1s", ""] {
+            assert!(parse_seconds(bad).is_err(), "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What every command that takes a scene takes with it.
+
+use std::path::{Path, PathBuf};
+
+use diacaustic::scene::{
+    Error as SceneError, LoadedScene, Override, ReadOptions, SceneOptions, StudioOptions, load_gltf_scene,
+    load_scene_with,
+};
+
+use crate::{Error, numbers::parse_seed};
+
+/// A scene and how it is read.
+#[derive(Clone, Debug, PartialEq, clap::Args)]
+pub struct SceneArguments {
+    /// The scene: a scene file (.toml) or a glTF file (.gltf, .glb)
+    pub scene: PathBuf,
+
+    /// A value in place of the scene file's, such as render.samples=64; repeatable
+    ///
+    /// KEY is a path with dots between its parts, VALUE is TOML: camera.position='[0, 1, 2]', materials.glass.ior=1.9,
+    /// objects.teapot.material='"gold"'. In arrays, a part is a number from 0 or the name of an element: lights.0.flux=10.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_override)]
+    pub overrides: Vec<Override>,
+
+    /// Seed of every random number, in place of the scene's
+    #[arg(long, value_name = "N", value_parser = parse_seed)]
+    pub seed: Option<u32>,
+
+    /// Lay a matt floor under a glTF file's scene, which catches its caustics
+    #[arg(long)]
+    pub floor: bool,
+
+    /// Read files that a glTF or OBJ file names outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+fn parse_override(text: &str) -> Result<Override, String> {
+    Override::parse(text).map_err(|error| match error {
+        // The argument is named before the message.
+        SceneError::Override { problem, .. } => problem,
+        other => other.to_string(),
+    })
+}
+
+impl SceneArguments {
+    /// Reads the scene.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is glTF and an argument is for scene files, or the other way round.
+    pub fn load(&self) -> Result<LoadedScene, Error> {
+        let read = ReadOptions { allow_outside: self.allow_outside };
+        let mut loaded = if self.is_gltf() {
+            if let Some(first) = self.overrides.first() {
+                return Err(Error::OverrideOfGltf { scene: self.scene.clone(), path: first.path() });
+            }
+            load_gltf_scene(&self.scene, &StudioOptions { floor: self.floor, read })?
+        } else {
+            if self.floor {
+                return Err(Error::FloorOfSceneFile(self.scene.clone()));
+            }
+            load_scene_with(&self.scene, &SceneOptions { overrides: self.overrides.clone(), read })?
+        };
+        let settings = &mut loaded.scene.settings;
+        settings.seed = self.seed.unwrap_or(settings.seed);
+        Ok(loaded)
+    }
+
+    /// Whether the scene is a glTF file by its name.
+    pub fn is_gltf(&self) -> bool {
+        has_gltf_ending(&self.scene)
+    }
+}
+
+fn has_gltf_ending(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ["gltf", "glb"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
+}
