@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use clap::{Args as _, FromArgMatches as _, Subcommand as _};
 
-use crate::commands::{inspect::InspectArguments, render::RenderArguments};
+use crate::commands::{experiment::ExperimentArguments, inspect::InspectArguments, render::RenderArguments};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,6 +20,8 @@ Examples:
       renders a glTF file through its own camera and by its own lights, if it has any, on a floor
   diacaustic inspect teapot.toml
       tells what the scene holds, without rendering it
+  diacaustic experiment assets/experiments/paper.toml
+      renders the tables of an experiment file and writes paper/index.html
 
 Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails.
 WGPU_BACKEND and WGPU_ADAPTER_NAME choose the GPU.";
@@ -36,6 +38,8 @@ pub enum Command {
     Render(RenderArguments),
     /// Tell what a scene holds, without rendering it
     Inspect(InspectArguments),
+    /// Sweep over a scene: tables of pictures with figures, findings judged, all on one page
+    Experiment(ExperimentArguments),
 }
 
 impl Command {

@@ -1,4 +1,5 @@
 //! The commands, each with its arguments beside it.
 
+pub mod experiment;
 pub mod inspect;
 pub mod render;

@@ -64,3 +64,15 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] diacaustic_output::Error),
 }
+
+impl Error {
+    /// The exit status that tells what is at fault: 2, the experiment or a scene; 1, the device or a file.
+    pub fn exit_status(&self) -> u8 {
+        use diacaustic::Error as Cause;
+        match self {
+            Self::Read { .. } | Self::Syntax { .. } | Self::Invalid { .. } | Self::Scene { .. } => 2,
+            Self::Render { cause: Cause::Scene(_) | Cause::Surface(_) | Cause::TooManyPhotons { .. }, .. } => 2,
+            Self::Render { .. } | Self::Folder { .. } | Self::Output(_) => 1,
+        }
+    }
+}

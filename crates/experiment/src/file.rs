@@ -6,6 +6,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use diacaustic::scene::Override;
 use serde::Deserialize;
 
 use crate::{Error, Figure};
@@ -43,6 +44,9 @@ pub struct Experiment {
     /// Plots of the 2016 paper's equations.
     #[serde(default)]
     pub closed_forms: Vec<ClosedForm>,
+    /// Values of every cell that come after all others.
+    #[serde(skip)]
+    pub overrides: Vec<Override>,
     /// The file itself.
     #[serde(skip)]
     pub path: PathBuf,
@@ -158,6 +162,8 @@ pub struct Step {
     pub label: String,
     /// Its place on a plot's axis.
     pub x: Option<f64>,
+    /// A scene in place of the table's.
+    pub scene: Option<PathBuf>,
     /// Its values.
     #[serde(default)]
     pub set: Sets,

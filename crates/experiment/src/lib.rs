@@ -10,8 +10,8 @@ mod closed_forms;
 mod contact_sheet;
 mod csv;
 mod error;
-mod file;
 mod figures;
+mod file;
 mod findings;
 mod page;
 mod plan;
@@ -20,10 +20,10 @@ mod rendered;
 mod study_plots;
 
 pub use error::Error;
-pub use file::{
-    Axis, Check, ClosedForm, Expectation, Experiment, Finding, Line, Measure, Model, Plot, Reason, Reference, Sets, Side,
-    Step, Table,
-};
 pub use figures::{Figure, Figures};
+pub use file::{
+    Axis, Check, ClosedForm, Expectation, Experiment, Finding, Line, Measure, Model, Plot, Reason, Reference, Sets,
+    Side, Step, Table,
+};
 pub use findings::{Judgement, Verdict};
 pub use rendered::{CellResult, Progress, Rendered};

@@ -29,8 +29,8 @@ pub use energy_maps::{EnergyMapFolder, Irradiance};
 pub use error::Error;
 pub use open_exr::{Channel, Values, write_exr, write_exr_with_channels};
 pub use picture::{Format, Picture, write_picture};
-pub use png::{Display, write_png};
-pub use replace::check_writable;
+pub use png::{Display, write_png, write_rgb8};
+pub use replace::{check_writable, write_text};
 pub use statistics::{
     Adapter, CameraRays, LightLedger, Map, Photons, SceneSize, Seconds, Statistics, write_statistics,
 };

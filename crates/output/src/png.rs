@@ -24,16 +24,32 @@ impl Display {
     }
 }
 
+impl Display {
+    /// A picture's pixels as 8-bit sRGB, three bytes each, row by row.
+    pub fn encode(&self, picture: &Picture<'_>) -> Vec<u8> {
+        picture.pixels.as_flattened().iter().map(|&channel| self.byte(channel)).collect()
+    }
+}
+
 /// Writes a picture as PNG: 8 bits a channel, sRGB.
 ///
 /// # Errors
 /// If the pixels are not as many as the size says, or the file cannot be written.
 pub fn write_png(path: &Path, picture: &Picture<'_>, display: &Display) -> Result<(), Error> {
     picture.check_shape(path)?;
-    let bytes: Vec<u8> = picture.pixels.as_flattened().iter().map(|&channel| display.byte(channel)).collect();
-    replace(path, |file| {
-        PngEncoder::new(file).write_image(&bytes, picture.width, picture.height, ExtendedColorType::Rgb8)
-    })
+    write_rgb8(path, picture.width, picture.height, &display.encode(picture))
+}
+
+/// Writes bytes of sRGB, three for each pixel, row by row from the top left, as PNG.
+///
+/// # Errors
+/// If the pixels are not as many as the size says, or the file cannot be written.
+pub fn write_rgb8(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<(), Error> {
+    let found = bytes.len() / 3;
+    if bytes.len() as u64 != 3 * u64::from(width) * u64::from(height) {
+        return Err(Error::Shape { path: path.to_owned(), width, height, found });
+    }
+    replace(path, |file| PngEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb8))
 }
 
 #[cfg(test)]

@@ -67,7 +67,8 @@ pub(crate) fn place_maps(scene: &Scene, triangles: &[WorldTriangle], budget: u64
             layout.map(|layout| {
                 let receivers: Vec<_> =
                     own.iter().filter(|t| scene.materials[t.material as usize].is_receiver()).copied().collect();
-                let placement = MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout, paper_size };
+                let placement =
+                    MapPlacement { areas: texel_areas(&layout, &receivers), first_texel, layout, paper_size };
                 first_texel += placement.layout.texel_count();
                 placement
             })
