@@ -60,7 +60,7 @@ fn an_experiment_becomes_a_page() {
     let column = |name: &str| lines[0].iter().position(|field| *field == name).unwrap();
     let value = |row: usize, name: &str| lines[row][column(name)].parse::<f64>().unwrap();
     assert!((value(2, "energy") / value(1, "energy") - 2.0).abs() < 1e-4, "{csv}");
-    assert!((value(2, "area") / value(1, "area") - 1.0).abs() < 0.3 && value(1, "error") > 0.0, "{csv}");
+    assert!((value(2, "peak") / value(1, "peak") - 2.0).abs() < 1e-4 && value(1, "error") > 0.0, "{csv}");
 
     let page = fs::read_to_string(made.join("index.html")).unwrap();
     assert!(page.contains("Flux &amp; caustic") && page.contains("It does &lt;of course&gt;."), "{page}");
