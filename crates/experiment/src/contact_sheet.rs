@@ -136,7 +136,9 @@ pub(crate) fn write_contact_sheet(path: &Path, experiment: &Experiment, rendered
         for (column, (cell, label)) in strip.cells.iter().zip(&strip.labels).enumerate() {
             let x = MARGIN + column as u32 * (PICTURE + GAP);
             for (line, text) in label.lines().enumerate() {
-                sheet.write(text, x, y + line as u32 * LINE, PICTURE);
+                // Only a model's first picture has a first line, which may go on over the next.
+                let room = if line == 0 { 2 * PICTURE } else { PICTURE };
+                sheet.write(text, x, y + line as u32 * LINE, room);
             }
             sheet.show(cell, x, y + 2 * LINE);
         }

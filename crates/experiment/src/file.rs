@@ -197,6 +197,9 @@ pub struct Check {
     pub row: Option<String>,
     /// The column along which it is looked at, in place of a row.
     pub column: Option<String>,
+    /// The steps that are looked at, by their labels; all if none are named.
+    #[serde(default)]
+    pub among: Vec<String>,
     /// What it must do.
     pub expects: Expectation,
     /// Where it must be `greatest` or `least`.

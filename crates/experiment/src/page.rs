@@ -180,8 +180,8 @@ fn write_definitions(html: &mut String, experiment: &Experiment) {
         html,
         "<h2>What the figures are</h2>\n<p>Measured in the energy map of “{}”. The <i>caustic</i> is where the mean irradiance of 5 × 5 texels is at least {}, but for \
          tables with a threshold of their own. <i>Mean irradiance</i> and <i>caustic area</i> are of the caustic, <i>peak irradiance</i> is that of \
-         the brightest texel. <i>Spottedness</i> is the coefficient of variation at the scale of a texel: the root of the mean square by which \
-         texels of the caustic differ from the mean of the 5 × 5 around them, over the caustic’s mean. <i>Energy</i> is the sum over the whole side, watts or, in the profile \
+         the brightest texel. <i>Spottedness</i> is the coefficient of variation at the scale of a texel: what alternates from texel to texel by \
+         Immerkær’s operator (1996), as the root of its mean square over the caustic’s mean. <i>Energy</i> is the sum over the whole side, watts or, in the profile \
          “paper”, energy. <i>Colour spread</i> is the difference of the brightest and the darkest channel, over the brightest, as a mean over the caustic’s light. <i>Error</i> \
          is the mean over pixels of the squared relative difference from a long run.</p>",
         escape(&experiment.measure.object),

@@ -191,6 +191,9 @@ impl Experiment {
             );
             return Err(self.invalid(part, problem));
         };
+        if let Some(unknown) = check.among.iter().find(|label| !line.labels.contains(label)) {
+            return Err(self.invalid(part, format!("among names {unknown:?}, which is no step of the row or column")));
+        }
         let needs_place = matches!(check.expects, Expectation::Greatest | Expectation::Least);
         if needs_place != check.at.is_some() {
             return Err(self.invalid(part, "\"greatest\" and \"least\" need `at`, and only they".to_owned()));
@@ -211,6 +214,18 @@ pub(crate) struct LineOfCells {
     pub labels: Vec<String>,
     /// The heading of the row or column itself.
     pub name: String,
+}
+
+impl LineOfCells {
+    /// The cells under some headings; all if none are named.
+    fn among(mut self, labels: &[String]) -> Self {
+        if !labels.is_empty() {
+            let kept = |label: &String| labels.contains(label);
+            let cells = self.places.into_iter().zip(self.labels).filter(|(_, label)| kept(label));
+            (self.places, self.labels) = cells.unzip();
+        }
+        self
+    }
 }
 
 impl Table {
@@ -238,7 +253,7 @@ impl Check {
     /// The cells that the check looks at; none if the table has no such row or column.
     pub(crate) fn line(&self, table: &Table) -> Option<LineOfCells> {
         let rows = table.row_steps();
-        match (&self.row, &self.column) {
+        let line = match (&self.row, &self.column) {
             (None, None) if rows.len() == 1 => Some(table.along_row(0)),
             (Some(row), None) => rows.iter().position(|step| step.label == *row).map(|row| table.along_row(row)),
             (None, Some(column)) => {
@@ -246,6 +261,7 @@ impl Check {
                 found.map(|column| table.along_column(column))
             }
             _ => None,
-        }
+        };
+        line.map(|line| line.among(&self.among))
     }
 }
