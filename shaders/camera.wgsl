@@ -46,7 +46,7 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.seed = seed;
     path.pixel = index;
     path.layer = LAYER_EMISSION;
-    path.sighting = Sighting(NONE, NONE, 0.0, 0.0);
+    path.sighting = Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0);
     return path;
 }
 
@@ -71,7 +71,7 @@ fn sample_pixels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     add_to_squares(index, film.pixels[index], path.radiance);
     film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {
-        let seen = path.sighting;
-        sightings[index] = Sighting(seen.texel, seen.bounced_texel, seen.weight, dot(path.radiance, vec3<f32>(1.0 / 3.0)));
+        path.sighting.radiance = dot(path.radiance, vec3<f32>(1.0 / 3.0));
+        sightings[index] = path.sighting;
     }
 }

@@ -7,14 +7,14 @@ import package::emitter::emission::{emit, Emission};
 import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
-import package::film::texels::footprint;
+import package::film::texels::{footprint, map_layer, map_place, tile_at};
 import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
 import package::layout::features::{has_dispersion, has_footprints, has_guide, paper_refraction, photon_light_kind, PAPER_NONE};
-import package::layout::records::{load_corners, load_object, load_triangle};
+import package::layout::records::{load_corners, load_triangle};
 import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
-    energy, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
+    energy_high, energy_low, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_DISPERSION, LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
@@ -72,7 +72,7 @@ fn to_units(beta: vec3<f32>) -> vec3<i32> {
 
 /// Whether photons are thrown away but for where they land.
 fn is_pilot() -> bool {
-    return has_guide && photon_params.pilot != 0u;
+    return photon_params.pilot != 0u;
 }
 
 /// The least number of photons that a footprint is made for.
@@ -116,8 +116,10 @@ fn turn_differential(
 
 /// The most texels from the middle of a footprint to its end, along an axis.
 const LARGEST_REACH: f32 = 12.0;
+/// Cells along a tile that is large enough for footprints.
+const LEAST_CELLS: f32 = 4.0;
 
-/// An elliptic kernel on a map, texels.
+/// An elliptic kernel on a tile of a map, texels.
 struct Ellipse {
     middle: vec2<f32>,
     /// Unit axis.
@@ -127,20 +129,48 @@ struct Ellipse {
 }
 
 /// Epanechnikov's kernel, not normalised.
-fn kernel_weight(ellipse: Ellipse, place: vec2<u32>) -> f32 {
-    let v = vec2<f32>(place) - ellipse.middle;
+fn kernel_weight(ellipse: Ellipse, place: vec2<f32>) -> f32 {
+    let v = place - ellipse.middle;
     let w = vec2<f32>(dot(v, ellipse.axis), v.x * ellipse.axis.y - v.y * ellipse.axis.x);
     return max(1.0 - dot(w * w, ellipse.inverse), 0.0);
 }
 
-/// Lays flux over the ellipse of the photon's footprint; returns false if it is too small.
+/// A texel's share of the kernel, not normalised: what would fall beyond the tile's nearest borders is folded back, and texels on a border
+/// stand for half a cell. So even light stays even up to the border.
+fn folded_weight(ellipse: Ellipse, texel: vec2<u32>, cells: vec2<f32>) -> f32 {
+    let place = vec2<f32>(texel);
+    let image = select(2.0 * cells - place, -place, ellipse.middle < 0.5 * cells);
+    let cover = select(vec2<f32>(1.0), vec2<f32>(0.5), (place == vec2<f32>(0.0)) | (place == cells));
+    let whole = kernel_weight(ellipse, place) + kernel_weight(ellipse, vec2<f32>(image.x, place.y))
+        + kernel_weight(ellipse, vec2<f32>(place.x, image.y)) + kernel_weight(ellipse, image);
+    return whole * cover.x * cover.y;
+}
+
+/// Adds units of flux to a texel.
+fn add_to_texel(texel: u32, units: vec3<i32>) {
+    for (var channel = 0u; channel < 3u; channel++) {
+        let share = units[channel];
+        if share != 0 {
+            let word = 3u * texel + channel;
+            let gained = carry(atomicAdd(&energy_low[word], bitcast<u32>(share)), share);
+            if gained != 0u {
+                atomicAdd(&energy_high[word], gained);
+            }
+        }
+    }
+}
+
+/// Lays flux over the ellipse of the photon's footprint, as far as it lies on the tile; returns false if it is too small, or the map is of several
+/// charts, onto others of which it might reach.
 fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, front: bool) -> bool {
     let c = load_corners(hit.triangle);
-    let object = load_object(triangle.object);
-    let b = hit.barycentric;
-    let at = (1.0 - b.x - b.y) * c.texel_01.xy + b.x * c.texel_01.zw + b.y * vec2<f32>(c.texel_x_2, c.texel_y_2);
-    let along_1 = c.texel_01.zw - c.texel_01.xy;
-    let along_2 = vec2<f32>(c.texel_x_2, c.texel_y_2) - c.texel_01.xy;
+    if c.charts > 1u {
+        return false;
+    }
+    let place = tile_at(map_layer(triangle.object, front), map_place(hit));
+    let cells = vec2<f32>(place.cells);
+    let along_1 = place.scale * (c.texel_01.zw - c.texel_01.xy);
+    let along_2 = place.scale * (vec2<f32>(c.texel_x_2, c.texel_y_2) - c.texel_01.xy);
     let change_1 = barycentric_change(triangle, (*photon).differential.origin_1);
     let change_2 = barycentric_change(triangle, (*photon).differential.origin_2);
     let p = change_1.x * along_1 + change_1.y * along_2;
@@ -150,37 +180,37 @@ fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, 
     let xy = p.x * p.y + q.x * q.y;
     let yy = p.y * p.y + q.y * q.y + 1.0 / 12.0;
     let larger = max(xx, yy);
-    if !(larger < 1e12) || larger < 0.25 {
+    if !(larger < 1e12) || larger < 0.25 || min(cells.x, cells.y) < LEAST_CELLS {
         return false;
     }
-    // An Epanechnikov kernel over an ellipse has a sixth of its squared radius as variance. Larger ellipses shrink to the largest reach.
+    // An Epanechnikov kernel over an ellipse has a sixth of its squared radius as variance. Larger ellipses shrink to the largest reach,
+    // which is half a tile at most, so that no more than one border along each axis is near.
     let mean = 0.5 * (xx + yy);
     let half_difference = sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
     let lambda = vec2<f32>(mean + half_difference, max(mean - half_difference, 1.0 / 12.0));
-    let squares = 6.0 * min(lambda, vec2<f32>(LARGEST_REACH * LARGEST_REACH / 6.0));
+    let largest = min(LARGEST_REACH, 0.5 * min(cells.x, cells.y));
+    let squares = 6.0 * min(lambda, vec2<f32>(largest * largest / 6.0));
     var axis = vec2<f32>(lambda.x - yy, xy);
     if dot(axis, axis) < 1e-8 * lambda.x * lambda.x {
         axis = select(vec2<f32>(0.0, 1.0), vec2<f32>(1.0, 0.0), xx >= yy);
     }
     axis = normalize(axis);
+    let at = place.at;
     let ellipse = Ellipse(at, axis, 1.0 / squares);
     let reach = sqrt(vec2<f32>(
         squares.x * axis.x * axis.x + squares.y * axis.y * axis.y, squares.x * axis.y * axis.y + squares.y * axis.x * axis.x,
     ));
-    let size = vec2<f32>(f32(object.map_width - 1u), f32(object.map_height - 1u));
-    let low = vec2<u32>(clamp(ceil(at - reach), vec2<f32>(0.0), size));
-    let high = vec2<u32>(max(clamp(floor(at + reach), vec2<f32>(0.0), size), vec2<f32>(low)));
+    let low = vec2<u32>(clamp(ceil(at - reach), vec2<f32>(0.0), cells));
+    let high = vec2<u32>(max(clamp(floor(at + reach), vec2<f32>(0.0), cells), vec2<f32>(low)));
     let width = high.x - low.x + 1u;
     let texels = width * (high.y - low.y + 1u);
-    let layer = select(object.map_layers - 1u, 0u, front);
-    let first = object.map_first_texel + layer * object.map_height * object.map_width;
     var sum = 0.0;
     // Step by step, for software adapters divide integers lane by lane.
-    var place = low;
+    var texel = low;
     for (var k = 0u; k < texels; k++) {
-        sum += kernel_weight(ellipse, place);
-        let ends_row = place.x == high.x;
-        place = vec2<u32>(select(place.x + 1u, low.x, ends_row), place.y + select(0u, 1u, ends_row));
+        sum += folded_weight(ellipse, texel, cells);
+        let ends_row = texel.x == high.x;
+        texel = vec2<u32>(select(texel.x + 1u, low.x, ends_row), texel.y + select(0u, 1u, ends_row));
     }
     if sum < 1e-6 {
         return false;
@@ -188,28 +218,17 @@ fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, 
     let total = (*photon).units;
     var before = vec3<i32>(0);
     var running = 0.0;
-    place = low;
+    texel = low;
     for (var k = 0u; k < texels; k++) {
-        running += kernel_weight(ellipse, place);
+        running += folded_weight(ellipse, texel, cells);
         var after = vec3<i32>(round(vec3<f32>(total) * (running / sum)));
         if k + 1u == texels {
             after = total;
         }
-        let shares = after - before;
+        add_to_texel(place.first_texel + texel.y * (place.cells.x + 1u) + texel.x, after - before);
         before = after;
-        let texel = first + place.y * object.map_width + place.x;
-        let ends_row = place.x == high.x;
-        place = vec2<u32>(select(place.x + 1u, low.x, ends_row), place.y + select(0u, 1u, ends_row));
-        if any(shares != vec3<i32>(0)) {
-            for (var channel = 0u; channel < 3u; channel++) {
-                let share = shares[channel];
-                let word = 6u * texel + 2u * channel;
-                let gained = carry(atomicAdd(&energy[word], bitcast<u32>(share)), share);
-                if gained != 0u {
-                    atomicAdd(&energy[word + 1u], gained);
-                }
-            }
-        }
+        let ends_row = texel.x == high.x;
+        texel = vec2<u32>(select(texel.x + 1u, low.x, ends_row), texel.y + select(0u, 1u, ends_row));
     }
     deposits += 1u;
     return true;
@@ -232,7 +251,7 @@ fn start_photon(place: u32) -> Photon {
         guided = guide_numbers(numbers.first);
     }
     if is_pilot() {
-        landings[index] = Landing(NONE, 0.0, guided.cells.x, guided.cells.y);
+        landings[index] = Landing(NONE, 0.0, 0.0, 0.0, guided.cells.x, guided.cells.y);
     }
     var emission: Emission;
     if paper_refraction != PAPER_NONE {
@@ -273,32 +292,31 @@ fn take_wavelength(photon: ptr<function, Photon>) {
 /// Adds a photon's flux to the four texels around a hit; their integers sum to its units exactly.
 fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
     let place = footprint(hit, object, front);
-    if is_pilot() {
-        landings[(*photon).index].texel = place.texels.x;
-        landings[(*photon).index].flux = dot(abs((*photon).beta), vec3<f32>(1.0 / 3.0));
-        return;
-    }
     var weights = place.weights;
     if paper_refraction != PAPER_NONE {
         weights = weights_by_equation_2(place.weights);
     }
     let units = (*photon).units;
-    for (var channel = 0u; channel < 3u; channel++) {
-        let total = units[channel];
-        var shares = vec4<i32>(round(f32(total) * weights));
-        shares.w = total - shares.x - shares.y - shares.z;
-        for (var k = 0u; k < 4u; k++) {
-            let share = shares[k];
-            if share != 0 {
-                let word = 6u * place.texels[k] + 2u * channel;
-                let gained = carry(atomicAdd(&energy[word], bitcast<u32>(share)), share);
-                if gained != 0u {
-                    atomicAdd(&energy[word + 1u], gained);
-                }
-            }
+    var rest = units;
+    for (var k = 0u; k < 4u; k++) {
+        var share = rest;
+        if k < 3u {
+            share = vec3<i32>(round(vec3<f32>(units) * weights[k]));
         }
+        rest -= share;
+        add_to_texel(place.texels[k], share);
     }
     deposits += 1u;
+}
+
+/// Notes where a pilot's photon lands.
+fn note_landing(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
+    let place = map_place(hit);
+    let index = (*photon).index;
+    landings[index].layer = map_layer(object, front);
+    landings[index].x = place.x;
+    landings[index].y = place.y;
+    landings[index].flux = dot(abs((*photon).beta), vec3<f32>(1.0 / 3.0));
 }
 
 /// The number of choice `choice` of a photon.
@@ -318,7 +336,11 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
             change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         }
         accounts[LEDGER_DEPOSITED] += (*photon).units;
-        if has_footprints && (*photon).has_footprint && !is_pilot() {
+        if is_pilot() {
+            note_landing(photon, hit, triangle.object, point.front);
+            return;
+        }
+        if has_footprints && (*photon).has_footprint {
             if deposit_ellipse(photon, hit, triangle, point.front) {
                 return;
             }
@@ -475,7 +497,7 @@ fn emit_photons(@builtin(global_invocation_id) invocation: vec3<u32>) {
         }
         in_flight = meet_surface(&photon, hit);
         if is_pilot() && in_flight && photon.depth > 0u {
-            landings[photon.index].texel = LOST;
+            landings[photon.index].layer = LOST;
         }
     }
     if !finished {

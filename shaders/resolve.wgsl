@@ -2,12 +2,12 @@
 
 import package::film::fixed_point::{wide_sum, wide_to_f32};
 import package::layout::records::record_texel;
-import package::layout::resolve_pass::{energy_sums, resolve_params, resolved_irradiance, texel_areas};
+import package::layout::resolve_pass::{energy_high_words, energy_low_words, resolve_params, resolved_irradiance, texel_areas};
 
 /// A sum of flux, low and high word.
 fn energy_sum(group: u32, texel: u32, channel: u32) -> vec2<u32> {
-    let word = 6u * (group * resolve_params.group_texels + texel) + 2u * channel;
-    return vec2<u32>(energy_sums[word], energy_sums[word + 1u]);
+    let word = 3u * (group * resolve_params.group_texels + texel) + channel;
+    return vec2<u32>(energy_low_words[word], energy_high_words[word]);
 }
 
 /// Stores the irradiance that follows from sums of flux.

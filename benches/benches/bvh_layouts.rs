@@ -52,6 +52,9 @@ impl Layout {
     }
 }
 
+/// What builds a layout.
+type Build = fn(&[Triangle]) -> Layout;
+
 fn build_binary(triangles: &[Triangle]) -> Layout {
     Layout::Binary(build_bvh2_from_tris(triangles, BvhBuildParams::medium_build(), &mut Duration::default()))
 }
@@ -89,7 +92,7 @@ fn bvh_layouts(criterion: &mut Criterion) {
 
     let mut group = criterion.benchmark_group("bvh_layouts");
     group.sampling_mode(SamplingMode::Flat);
-    let builders: [(&str, fn(&[Triangle]) -> Layout); 2] = [("binary", build_binary), ("eight-wide", build_eight_wide)];
+    let builders: [(&str, Build); 2] = [("binary", build_binary), ("eight-wide", build_eight_wide)];
     for (name, build) in builders {
         group.throughput(Throughput::Elements(triangles.len() as u64));
         group.bench_function(BenchmarkId::new("build", name), |bencher| bencher.iter(|| build(&triangles)));

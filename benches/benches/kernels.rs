@@ -21,6 +21,9 @@ const MAP_SIZE: u32 = 512;
 const PHOTONS: u64 = 1 << 15;
 const PICTURE_SIZE: u32 = 128;
 
+/// What makes other settings of a scene.
+type Change = fn(&mut Scene);
+
 /// The scene with other settings.
 fn with(change: impl FnOnce(&mut Scene)) -> Renderer {
     let mut scene = teapot(MAP_SIZE);
@@ -58,7 +61,7 @@ fn kernels(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("kernels");
     group.sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::Elements(PHOTONS));
-    let photon_kinds: [(&str, fn(&mut Scene)); 4] = [
+    let photon_kinds: [(&str, Change); 4] = [
         ("plain", |scene| scene.settings.guiding = false),
         ("guided", |_| {}),
         ("footprints", |scene| scene.settings.footprints = true),
@@ -77,7 +80,7 @@ fn kernels(criterion: &mut Criterion) {
         });
     }
     group.throughput(Throughput::Elements(u64::from(PICTURE_SIZE * PICTURE_SIZE)));
-    let sample_kinds: [(&str, fn(&mut Scene)); 3] =
+    let sample_kinds: [(&str, Change); 3] =
         [("direct", |scene| scene.settings.max_bounces = 0), ("bounces", |_| {}), ("paper", as_in_the_paper)];
     for (name, change) in sample_kinds {
         let mut renderer = with(change);

@@ -9,7 +9,7 @@
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use diacaustic_benches::{brief, floor, two_teapots};
-use diacaustic_surface::{Bvh, MapLayout, texel_areas, world_triangles};
+use diacaustic_surface::{Bvh, MapLayout, MapTiles, texel_areas, world_triangles};
 use diacaustic_tests::renderer;
 
 const MAP_SIZE: u32 = 1024;
@@ -28,7 +28,7 @@ fn scene_setup(criterion: &mut Criterion) {
     let floor_triangles: Vec<_> = triangles.iter().filter(|t| t.object as usize == floor).copied().collect();
     group.throughput(Throughput::Elements(u64::from(layout.width) * u64::from(layout.height)));
     group.bench_function(BenchmarkId::new("texel_areas", MAP_SIZE), |bencher| {
-        bencher.iter(|| texel_areas(&layout, &floor_triangles));
+        bencher.iter(|| texel_areas(&layout, &MapTiles::dense(&layout), &floor_triangles));
     });
 
     let mut renderer = renderer(&scene);

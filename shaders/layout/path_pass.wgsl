@@ -45,11 +45,19 @@ struct Film {
 
 /// What a path saw of the energy maps.
 struct Sighting {
-    /// The first texel that it met, or NONE.
-    texel: u32,
-    /// The texel that it met last, after diffuse surfaces, or NONE.
-    bounced_texel: u32,
-    /// Radiance in the picture for an irradiance of 1 W/m² at the first texel, 1/sr, mean of the channels.
+    /// The layer that it met first, two for each object, or NONE.
+    layer: u32,
+    /// Where on the map's plane it met it.
+    x: f32,
+    /// The same along y.
+    y: f32,
+    /// The layer that it met last, after diffuse surfaces, or NONE.
+    bounced_layer: u32,
+    /// Where on the map's plane it met that.
+    bounced_x: f32,
+    /// The same along y.
+    bounced_y: f32,
+    /// Radiance in the picture for an irradiance of 1 W/m² at the first place, 1/sr, mean of the channels.
     weight: f32,
     /// Radiance that the path gathered, W/(m² sr), mean of the channels.
     radiance: f32,
@@ -84,7 +92,7 @@ const LAYER_INDIRECT: u32 = 3u;
 const LIGHT_LAYERS: u32 = 4u;
 
 @group(1) @binding(0) var<uniform> path_params: PathParams;
-/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused. With several light groups, of each
+/// Irradiance of each texel, W/m², in the order of the maps' tiles, row by row; the last component is unused. With several light groups, of each
 /// texel first all light's, then each group's.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;

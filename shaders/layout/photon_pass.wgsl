@@ -71,8 +71,12 @@ const LOST: u32 = 0xfffffffeu;
 
 /// Where a pilot's photon went.
 struct Landing {
-    /// The texel that it landed on; LOST if it met a caster and landed on none, NONE if it met no caster.
-    texel: u32,
+    /// The layer that it landed on, two for each object; LOST if it met a caster and landed on none, NONE if it met no caster.
+    layer: u32,
+    /// Where on the map's plane it landed.
+    x: f32,
+    /// The same along y.
+    y: f32,
     /// Flux that it brought there, W, mean of the channels.
     flux: f32,
     /// The cell of the guide of its first two emission numbers.
@@ -107,12 +111,13 @@ struct PhotonLedger {
 }
 
 @group(1) @binding(0) var<uniform> photon_params: PhotonParams;
-/// Signed 64-bit sums of flux, low and high word: for each texel and channel.
 /// The light's guide, an entry a texel: lower and upper end, as bits, of the part of [0, 1) that moves into interval k of n, and the
 /// interval that k/n moves into. First the columns of the guide of the first two emission numbers and the rows of each column, then the
 /// same of the next two.
 @group(1) @binding(1) var guide: texture_2d<u32>;
-@group(2) @binding(0) var<storage, read_write> energy: array<atomic<u32>>;
-@group(2) @binding(1) var<storage, read_write> ledger: PhotonLedger;
+/// Signed 64-bit sums of flux, for each texel and channel: the low words, and apart from them, so that twice as much can be bound, the high ones.
+@group(2) @binding(0) var<storage, read_write> energy_low: array<atomic<u32>>;
+@group(2) @binding(1) var<storage, read_write> energy_high: array<atomic<u32>>;
+@group(2) @binding(2) var<storage, read_write> ledger: PhotonLedger;
 /// In a pilot, an entry for each photon.
-@group(2) @binding(2) var<storage, read_write> landings: array<Landing>;
+@group(2) @binding(3) var<storage, read_write> landings: array<Landing>;

@@ -1,8 +1,8 @@
 // Records of the scene's textures.
 
 import package::layout::scene::{
-    corners, emitting_triangles, environment, lights, material_textures, materials, nodes, objects, spectra, surface_textures, texture_coordinates,
-    texture_texels, triangles, BvhNode, Light, Material, MaterialTextures, Object, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
+    corners, emitting_triangles, environment, lights, maps, material_textures, materials, nodes, spectra, surface_textures, texture_coordinates,
+    texture_texels, triangles, BvhNode, Light, MapLayer, MapSquare, MapTile, Material, MaterialTextures, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
     LIGHT_GROUP_SHIFT, LIGHT_KIND_BITS, RECORDS_WIDTH_BITS, WAVELENGTH_STEPS,
 };
 
@@ -38,14 +38,27 @@ fn load_corners(index: u32) -> TriangleCorners {
     let first = 4u * index;
     let texel_0 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first), 0));
     let texel_1 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 1u), 0));
-    let texel_2 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 2u), 0));
+    let texel_2 = textureLoad(corners, record_texel(first + 2u), 0);
     let texel_3 = bitcast<vec4<f32>>(textureLoad(corners, record_texel(first + 3u), 0));
-    return TriangleCorners(texel_0.xyz, texel_0.w, texel_1.xyz, texel_1.w, texel_2.xyz, 0u, texel_3);
+    return TriangleCorners(
+        texel_0.xyz, texel_0.w, texel_1.xyz, texel_1.w, bitcast<vec3<f32>>(texel_2.xyz), texel_2.w, texel_3,
+    );
 }
 
-fn load_object(index: u32) -> Object {
-    let texel = textureLoad(objects, record_texel(index), 0);
-    return Object(texel.x, texel.y, texel.z, texel.w);
+/// A layer of a map, two for each object.
+fn load_map_layer(index: u32) -> MapLayer {
+    let texel = textureLoad(maps, record_texel(index), 0);
+    return MapLayer(texel.x, texel.y, bitcast<f32>(texel.z), bitcast<f32>(texel.w));
+}
+
+fn load_map_square(index: u32) -> MapSquare {
+    let texel = textureLoad(maps, record_texel(index), 0);
+    return MapSquare(texel.x, texel.y, texel.zw);
+}
+
+fn load_map_tile(index: u32) -> MapTile {
+    let texel = textureLoad(maps, record_texel(index), 0);
+    return MapTile(texel.x, texel.y, bitcast<f32>(texel.z), bitcast<f32>(texel.w));
 }
 
 fn load_material(index: u32) -> Material {

@@ -21,10 +21,12 @@ struct ResolveParams {
 }
 
 @group(0) @binding(0) var<uniform> resolve_params: ResolveParams;
-/// Signed 64-bit sums of flux, low and high word: for each light group, texel and channel.
-@group(0) @binding(1) var<storage, read> energy_sums: array<u32>;
+/// Signed 64-bit sums of flux, for each light group, texel and channel: low words.
+@group(0) @binding(1) var<storage, read> energy_low_words: array<u32>;
+/// Their high words.
+@group(0) @binding(2) var<storage, read> energy_high_words: array<u32>;
 /// Area of each texel, m².
-@group(0) @binding(2) var<storage, read> texel_areas: array<f32>;
-/// Irradiance of each texel, W/m², in the order of the maps, row by row; the last component is unused. With several light groups, of each
+@group(0) @binding(3) var<storage, read> texel_areas: array<f32>;
+/// Irradiance of each texel, W/m², in the order of the maps' tiles, row by row; the last component is unused. With several light groups, of each
 /// texel first all light's, then each group's.
-@group(0) @binding(3) var resolved_irradiance: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(4) var resolved_irradiance: texture_storage_2d<rgba32float, write>;

@@ -42,8 +42,8 @@ struct TriangleCorners {
     texel_y_2: f32,
     /// Unit normal at the third corner, world frame.
     normal_2: vec3<f32>,
-    /// Unused.
-    padding: u32,
+    /// Charts of the object's map; 0 without one.
+    charts: u32,
     /// Texel column and row of the first corner, then of the second.
     texel_01: vec4<f32>,
 }
@@ -102,17 +102,46 @@ struct SurfaceTexture {
     padding_t: u32,
 }
 
-/// An object's place in the energy maps.
-struct Object {
-    /// Index of its map's first texel.
-    map_first_texel: u32,
-    /// Texels along x; 0 for an object without a map.
-    map_width: u32,
-    /// Texels along y.
-    map_height: u32,
-    /// 1, or 2 where front and back are kept apart.
-    map_layers: u32,
+/// A layer of an object's energy map, whose plane is divided into squares.
+struct MapLayer {
+    /// Index of the first MapSquare record, row by row.
+    first_square: u32,
+    /// Squares along x, and from bit 16 on along y.
+    squares: u32,
+    /// Squares along x for each unit of the plane.
+    scale_x: f32,
+    /// The same along y.
+    scale_y: f32,
 }
+
+/// A square of a map's plane, which is divided into parts.
+struct MapSquare {
+    /// Index of the first part's MapTile record, row by row.
+    first_part: u32,
+    /// Parts along each side: a power of two.
+    side: u32,
+    /// Unused.
+    padding: vec2<u32>,
+}
+
+/// The tile that a part of a square lies on.
+struct MapTile {
+    /// Index of its first texel, row by row.
+    first_texel: u32,
+    /// Cells along x and, from bit MAP_TILE_ROWS_SHIFT on, along y: one less than texels. From MAP_TILE_LEVEL_SHIFT on its level against the squares, plus MAP_TILE_LEVEL_BIAS.
+    cells: u32,
+    /// Where its first texel stands, in squares.
+    origin_x: f32,
+    /// The same along y.
+    origin_y: f32,
+}
+
+/// Where the rows of a tile's cells stand.
+const MAP_TILE_ROWS_SHIFT: u32 = 13u;
+/// Where its level stands.
+const MAP_TILE_LEVEL_SHIFT: u32 = 26u;
+/// What is added to its level.
+const MAP_TILE_LEVEL_BIAS: u32 = 16u;
 
 /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
 struct Material {
@@ -221,8 +250,9 @@ const WAVELENGTH_STEPS: u32 = 512u;
 @group(0) @binding(1) var triangles: texture_2d<u32>;
 /// TriangleCorners records of 4 texels, floating-point numbers as their bits.
 @group(0) @binding(2) var corners: texture_2d<u32>;
-/// Object records of 1 texel.
-@group(0) @binding(3) var objects: texture_2d<u32>;
+/// MapLayer records, two for each object, of its front and its back, then MapSquare and MapTile records, of 1 texel each. The indices in them
+/// count from the first texel.
+@group(0) @binding(3) var maps: texture_2d<u32>;
 /// Material records of 5 texels, floating-point numbers as their bits.
 @group(0) @binding(4) var materials: texture_2d<u32>;
 /// Light records of 4 texels, floating-point numbers as their bits: first spheres, last distant lights and the environment.

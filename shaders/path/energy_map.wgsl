@@ -1,7 +1,7 @@
 // What a path reads in the energy maps.
 
 import package::film::layers::{add_to_caustic_of_group, add_to_group, add_to_layer, add_to_no_group};
-import package::film::texels::{footprint, Footprint};
+import package::film::texels::{footprint, map_layer, map_place, Footprint};
 import package::geometry::traverse::Hit;
 import package::layout::features::{light_group_count, notes_sightings};
 import package::layout::path_pass::{irradiance, path_params, LAYER_CAUSTIC, LAYER_EMISSION, LAYER_INDIRECT};
@@ -31,13 +31,17 @@ fn add_maps_of_groups(path: ptr<function, Path>, place: Footprint, reflected: ve
     }
 }
 
-/// Notes the texel beside a vertex: the path's first, or its last.
-fn note_sighting(path: ptr<function, Path>, vertex: Vertex, texel: u32) {
-    if (*path).sighting.texel == NONE {
-        (*path).sighting.texel = texel;
+/// Notes where a vertex lies on the maps: the path's first, or its last.
+fn note_sighting(path: ptr<function, Path>, vertex: Vertex, layer: u32, place: vec2<f32>) {
+    if (*path).sighting.layer == NONE {
+        (*path).sighting.layer = layer;
+        (*path).sighting.x = place.x;
+        (*path).sighting.y = place.y;
         (*path).sighting.weight = dot((*path).beta * vertex.material.base * (1.0 - vertex.gloss), vec3<f32>(1.0 / (3.0 * PI)));
     } else {
-        (*path).sighting.bounced_texel = texel;
+        (*path).sighting.bounced_layer = layer;
+        (*path).sighting.bounced_x = place.x;
+        (*path).sighting.bounced_y = place.y;
     }
 }
 
@@ -57,6 +61,6 @@ fn add_map(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     }
     (*path).radiance += (*path).beta * sent;
     if notes_sightings {
-        note_sighting(path, vertex, place.texels.x);
+        note_sighting(path, vertex, map_layer(object, vertex.point.front), map_place(hit));
     }
 }

@@ -67,7 +67,9 @@ fn gather_light(path: ptr<function, Path>, vertex: Vertex) {
         (*path).shadow_pending = true;
         (*path).shadow_origin = leave(point, wi);
         (*path).shadow_direction = wi;
-        (*path).shadow_length = select(SHADOW_RAY_LENGTH * light.distance, FAR, light.distance >= FAR);
+        // The ray leaves the surface some way off the point that the distance is from.
+        let length = SHADOW_RAY_LENGTH * light.distance - distance((*path).shadow_origin, point.position);
+        (*path).shadow_length = select(length, FAR, light.distance >= FAR);
         (*path).unblocked = brought;
         if has_light_layers {
             // The gloss of a receiver that is no caster counts with its base.

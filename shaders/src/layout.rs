@@ -91,8 +91,8 @@ shared_structs! {
         texel_y_2: f32,
         /// Unit normal at the third corner, world frame.
         normal_2: [f32; 3],
-        /// Unused.
-        padding: u32,
+        /// Charts of the object's map; 0 without one.
+        charts: u32,
         /// Texel column and row of the first corner, then of the second.
         texel_01: [f32; 4],
     }
@@ -147,16 +147,36 @@ shared_structs! {
         /// Unused.
         padding_t: u32,
     }
-    /// An object's place in the energy maps.
-    struct Object {
-        /// Index of its map's first texel.
-        map_first_texel: u32,
-        /// Texels along x; 0 for an object without a map.
-        map_width: u32,
-        /// Texels along y.
-        map_height: u32,
-        /// 1, or 2 where front and back are kept apart.
-        map_layers: u32,
+    /// A layer of an object's energy map, whose plane is divided into squares.
+    struct MapLayer {
+        /// Index of the first MapSquare record, row by row.
+        first_square: u32,
+        /// Squares along x, and from bit 16 on along y.
+        squares: u32,
+        /// Squares along x for each unit of the plane.
+        scale_x: f32,
+        /// The same along y.
+        scale_y: f32,
+    }
+    /// A square of a map's plane, which is divided into parts.
+    struct MapSquare {
+        /// Index of the first part's MapTile record, row by row.
+        first_part: u32,
+        /// Parts along each side: a power of two.
+        side: u32,
+        /// Unused.
+        padding: [u32; 2],
+    }
+    /// The tile that a part of a square lies on.
+    struct MapTile {
+        /// Index of its first texel, row by row.
+        first_texel: u32,
+        /// Cells along x and, from bit MAP_TILE_ROWS_SHIFT on, along y: one less than texels. From MAP_TILE_LEVEL_SHIFT on its level against the squares, plus MAP_TILE_LEVEL_BIAS.
+        cells: u32,
+        /// Where its first texel stands, in squares.
+        origin_x: f32,
+        /// The same along y.
+        origin_y: f32,
     }
     /// What a surface does to light; docs/materials.md. Which fields count depends on `kind`.
     struct Material {
@@ -267,8 +287,12 @@ shared_structs! {
     }
     /// Where a pilot's photon went.
     struct Landing {
-        /// The texel that it landed on; LOST if it met a caster and landed on none, NONE if it met no caster.
-        texel: u32,
+        /// The layer that it landed on, two for each object; LOST if it met a caster and landed on none, NONE if it met no caster.
+        layer: u32,
+        /// Where on the map's plane it landed.
+        x: f32,
+        /// The same along y.
+        y: f32,
         /// Flux that it brought there, W, mean of the channels.
         flux: f32,
         /// The cell of the guide of its first two emission numbers.
@@ -326,13 +350,51 @@ shared_structs! {
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
+    /// Which texels of a lightmap a dispatch samples.
+    struct BakeParams {
+        /// Index of the object.
+        object: u32,
+        /// Texels among the object's that hold surface before the dispatch's first.
+        first_texel: u32,
+        /// Texels that the dispatch samples.
+        texel_count: u32,
+        /// Workgroups along x.
+        groups_x: u32,
+        /// Texels of the lightmap along x.
+        width: u32,
+        /// Texels of the lightmap along y.
+        height: u32,
+        /// Texels over the area of their surface, 1/m², on average over the map.
+        texel_density: f32,
+    }
+    /// A texel that holds surface.
+    struct BakeTexel {
+        /// Its column.
+        column: u32,
+        /// Its row.
+        row: u32,
+        /// 0 on the front, 1 on the back.
+        side: u32,
+        /// Unused.
+        padding: u32,
+        /// The media in front of it, as keys.
+        media: [u32; 4],
+    }
     /// What a path saw of the energy maps.
     struct Sighting {
-        /// The first texel that it met, or NONE.
-        texel: u32,
-        /// The texel that it met last, after diffuse surfaces, or NONE.
-        bounced_texel: u32,
-        /// Radiance in the picture for an irradiance of 1 W/m² at the first texel, 1/sr, mean of the channels.
+        /// The layer that it met first, two for each object, or NONE.
+        layer: u32,
+        /// Where on the map's plane it met it.
+        x: f32,
+        /// The same along y.
+        y: f32,
+        /// The layer that it met last, after diffuse surfaces, or NONE.
+        bounced_layer: u32,
+        /// Where on the map's plane it met that.
+        bounced_x: f32,
+        /// The same along y.
+        bounced_y: f32,
+        /// Radiance in the picture for an irradiance of 1 W/m² at the first place, 1/sr, mean of the channels.
         weight: f32,
         /// Radiance that the path gathered, W/(m² sr), mean of the channels.
         radiance: f32,
@@ -431,6 +493,16 @@ pub const WAVELENGTH_STEPS: u32 = 512;
 pub const RECORDS_WIDTH_BITS: u32 = 13;
 /// Entries of the traversal stack: the deepest BVH that the kernels follow.
 pub const STACK_SIZE: u32 = 24;
+
+/// Parts of [`MapTile::cells`].
+pub mod map_tile {
+    /// Where the rows stand.
+    pub const ROWS_SHIFT: u32 = 13;
+    /// Where the level stands.
+    pub const LEVEL_SHIFT: u32 = 26;
+    /// What is added to the level.
+    pub const LEVEL_BIAS: u32 = 16;
+}
 
 /// Values of [`Material::kind`].
 pub mod material_kind {
@@ -554,6 +626,9 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("STACK_SIZE", STACK_SIZE),
     ("WAVELENGTH_STEPS", WAVELENGTH_STEPS),
     ("RECORDS_WIDTH_BITS", RECORDS_WIDTH_BITS),
+    ("MAP_TILE_ROWS_SHIFT", map_tile::ROWS_SHIFT),
+    ("MAP_TILE_LEVEL_SHIFT", map_tile::LEVEL_SHIFT),
+    ("MAP_TILE_LEVEL_BIAS", map_tile::LEVEL_BIAS),
     ("MATERIAL_DIFFUSE", material_kind::DIFFUSE),
     ("MATERIAL_PHONG", material_kind::PHONG),
     ("MATERIAL_MIRROR", material_kind::MIRROR),

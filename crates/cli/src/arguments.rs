@@ -4,7 +4,9 @@ use std::ffi::OsString;
 
 use clap::{Args as _, FromArgMatches as _, Subcommand as _};
 
-use crate::commands::{experiment::ExperimentArguments, inspect::InspectArguments, render::RenderArguments};
+use crate::commands::{
+    bake::BakeArguments, experiment::ExperimentArguments, inspect::InspectArguments, render::RenderArguments,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -18,6 +20,8 @@ Examples:
       stops after a minute; writes irradiance and statistics beside the picture
   diacaustic vase.glb --floor
       renders a glTF file through its own camera and by its own lights, if it has any, on a floor
+  diacaustic bake teapot.toml --size 1024
+      writes lightmaps and the scene with them as teapot.baked/scene.glb
   diacaustic inspect teapot.toml
       tells what the scene holds, without rendering it
   diacaustic experiment assets/experiments/paper.toml
@@ -36,6 +40,8 @@ WGPU_BACKEND and WGPU_ADAPTER_NAME choose the GPU.";
 pub enum Command {
     /// Render a scene and write its picture, energy maps and statistics; this is what happens without a command
     Render(RenderArguments),
+    /// Write the light on every receiver as a lightmap, and the scene with its light as glTF
+    Bake(BakeArguments),
     /// Tell what a scene holds, without rendering it
     Inspect(InspectArguments),
     /// Sweep over a scene: tables of pictures with figures, findings judged, all on one page
@@ -87,7 +93,17 @@ mod tests {
 
     #[test]
     fn bad_flags_have_exit_status_2_and_help_has_0() {
-        for bad in ["", "render", "inspect", "a.toml b.toml", "a.toml --photon 3", "a.toml --samples x", "--quiet"] {
+        for bad in [
+            "",
+            "render",
+            "inspect",
+            "bake",
+            "bake a.toml --size 9 --texels-per-metre 3",
+            "a.toml b.toml",
+            "a.toml --photon 3",
+            "a.toml --samples x",
+            "--quiet",
+        ] {
             assert_eq!(parse(bad).unwrap_err().exit_code(), 2, "{bad:?}");
         }
         let help = parse("--help").unwrap_err();

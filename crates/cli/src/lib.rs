@@ -33,6 +33,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let done = match command {
         Command::Render(arguments) => commands::render::run(&arguments),
+        Command::Bake(arguments) => commands::bake::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
         Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };

@@ -49,6 +49,18 @@ impl SceneArguments {
     /// # Errors
     /// If it cannot be read, or is glTF and an argument is for scene files, or the other way round.
     pub fn load(&self) -> Result<LoadedScene, Error> {
+        self.load_with(false)
+    }
+
+    /// Reads the scene as [`Self::load`] does, also without a camera.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn load_for_baking(&self) -> Result<LoadedScene, Error> {
+        self.load_with(true)
+    }
+
+    fn load_with(&self, may_lack_camera: bool) -> Result<LoadedScene, Error> {
         let read = ReadOptions { allow_outside: self.allow_outside };
         let mut loaded = if self.is_gltf() {
             if let Some(first) = self.overrides.first() {
@@ -59,7 +71,7 @@ impl SceneArguments {
             if self.floor {
                 return Err(Error::FloorOfSceneFile(self.scene.clone()));
             }
-            load_scene_with(&self.scene, &SceneOptions { overrides: self.overrides.clone(), read })?
+            load_scene_with(&self.scene, &SceneOptions { overrides: self.overrides.clone(), read, may_lack_camera })?
         };
         let settings = &mut loaded.scene.settings;
         settings.seed = self.seed.unwrap_or(settings.seed);

@@ -42,7 +42,7 @@ pub enum Error {
         /// The table, row, column and model.
         cell: String,
         /// Why.
-        cause: diacaustic::scene::Error,
+        cause: Box<diacaustic::scene::Error>,
     },
     /// The scene of a cell cannot be rendered.
     #[error("the scene of {cell}: {cause}")]
@@ -50,7 +50,7 @@ pub enum Error {
         /// The table, row, column and model.
         cell: String,
         /// Why.
-        cause: diacaustic::Error,
+        cause: Box<diacaustic::Error>,
     },
     /// A folder cannot be made.
     #[error("{}: the folder cannot be made: {cause}", path.display())]
@@ -71,8 +71,11 @@ impl Error {
         use diacaustic::Error as Cause;
         match self {
             Self::Read { .. } | Self::Syntax { .. } | Self::Invalid { .. } | Self::Scene { .. } => 2,
-            Self::Render { cause: Cause::Scene(_) | Cause::Surface(_) | Cause::TooManyPhotons { .. }, .. } => 2,
-            Self::Render { .. } | Self::Folder { .. } | Self::Output(_) => 1,
+            Self::Render { cause, .. } => match **cause {
+                Cause::Scene(_) | Cause::Surface(_) | Cause::TooManyPhotons { .. } => 2,
+                _ => 1,
+            },
+            Self::Folder { .. } | Self::Output(_) => 1,
         }
     }
 }

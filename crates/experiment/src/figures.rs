@@ -126,21 +126,23 @@ impl Figures {
 
     /// Measures one side of an energy map; times and error stay unset.
     pub(crate) fn of_map(map: &EnergyMap, measure: &Measure) -> Self {
-        let texels = map.areas.len();
+        // A map of a stated size has its layers one after the other, row by row.
+        let texels = map.areas.len() / map.layers as usize;
         let layer = if measure.side == Side::Back { map.layers as usize - 1 } else { 0 };
+        let areas = &map.areas[layer * texels..][..texels];
         let colors: Vec<_> = (0..texels).map(|texel| map.irradiance(layer * texels + texel)).collect();
         let field = Field {
             width: i64::from(map.width),
             height: i64::from(map.height),
             irradiance: colors.iter().map(|color| color.element_sum() / 3.0).collect(),
-            areas: &map.areas,
+            areas,
         };
         let mut figures = field.measure(measure.threshold);
         let fluxes = (0..texels).map(|texel| map.flux(layer * texels + texel).element_sum() / 3.0);
         figures.energy = fluxes.sum();
         let (mut spread, mut most) = (0.0, 0.0);
         for ((color, area), _) in
-            colors.iter().zip(&map.areas).zip(0..).filter(|(_, at)| field.is_caustic(*at, measure.threshold))
+            colors.iter().zip(areas).zip(0..).filter(|(_, at)| field.is_caustic(*at, measure.threshold))
         {
             spread += area * (color.max_element() - color.min_element());
             most += area * color.max_element();

@@ -62,7 +62,7 @@ impl Scale {
     }
 
     /// An axis for values that are no less than 0: it begins there.
-    fn from_zero(self) -> Self {
+    fn starting_at_zero(self) -> Self {
         if self.logarithmic || self.low < 0.0 { self } else { Self { low: 0.0, high: self.high * 1.05, ..self } }
     }
 
@@ -108,7 +108,7 @@ impl Chart {
         let coordinates = |axis: usize| self.curves.iter().flat_map(move |c| c.points.iter().map(move |p| p[axis]));
         let ticked = coordinates(0).chain(self.x_ticks.iter().map(|(x, _)| *x));
         let x = Scale::new(ticked, self.logarithmic[0], LEFT, RIGHT);
-        let y = Scale::new(coordinates(1), self.logarithmic[1], BOTTOM, TOP).from_zero();
+        let y = Scale::new(coordinates(1), self.logarithmic[1], BOTTOM, TOP).starting_at_zero();
         let height = BOTTOM + 52.0 + LEGEND[1] * self.curves.len().div_ceil(2) as f64;
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" width=\"{WIDTH}\" height=\"{height}\" \

@@ -97,8 +97,8 @@ impl Experiment {
     }
 
     fn run(&self, renderer: &mut Renderer, cell: &Cell, job: &Job) -> Result<Done, Error> {
-        let of_scene = |cause| Error::Scene { cell: cell.name.clone(), cause };
-        let of_render = |cause| Error::Render { cell: cell.name.clone(), cause };
+        let of_scene = |cause| Error::Scene { cell: cell.name.clone(), cause: Box::new(cause) };
+        let of_render = |cause| Error::Render { cell: cell.name.clone(), cause: Box::new(cause) };
         let overrides = job.sets.iter().map(|(key, value)| Override::parse(&format!("{key}={value}")));
         let overrides = overrides.collect::<Result<_, _>>().map_err(of_scene)?;
         let options = SceneOptions { overrides, ..SceneOptions::default() };
@@ -120,6 +120,9 @@ impl Experiment {
         let film = renderer.film().map_err(of_render)?;
         let object = self.object(&scene, cell)?;
         let map = renderer.energy_map(object).map_err(of_render)?.ok_or_else(|| self.no_map(cell))?;
+        if map.tiles.tiles.len() != map.layers as usize {
+            return Err(self.no_stated_size(cell));
+        }
         let figures = Figures { photon_seconds, seconds, ..Figures::of_map(&map, &cell.measure) };
         Ok(Done { film, display: display(&scene.output), figures, photons })
     }
@@ -143,6 +146,14 @@ impl Experiment {
             part: cell.name.clone(),
             problem: format!("object {:?} has no energy map; measure one with a diffuse share", cell.measure.object),
         }
+    }
+
+    fn no_stated_size(&self, cell: &Cell) -> Error {
+        let object = &cell.measure.object;
+        let problem = format!(
+            "the energy map of object {object:?} has texels of several sizes, which figures at the scale of a texel cannot compare; set render.map_size"
+        );
+        Error::Invalid { path: self.path.clone(), part: cell.name.clone(), problem }
     }
 
     fn result(&self, cell: &Cell, done: &Done, reference: Option<&Done>) -> CellResult {

@@ -57,6 +57,10 @@ pub struct SceneSize {
     pub bvh_nodes: u64,
     /// Bytes of the scene, the maps and the film on the device.
     pub device_bytes: u64,
+    /// Bytes of the sums of all energy maps.
+    pub map_bytes: u64,
+    /// Bytes that the sums of maps whose size the scene leaves open may take.
+    pub map_budget: u64,
 }
 
 /// Wall-clock time of each stage, seconds.
@@ -131,6 +135,16 @@ pub struct Map {
     pub height: u32,
     /// 1, or 2 if both sides of the surface are held.
     pub layers: u32,
+    /// Tiles.
+    pub tiles: u64,
+    /// Texels of all tiles.
+    pub texels: u64,
+    /// Mean width of its texels where the camera sees it, metres.
+    pub texel_width: f64,
+    /// What that would be without a budget.
+    pub wanted_texel_width: f64,
+    /// Width of its finest texels, metres.
+    pub finest_texel_width: f64,
 }
 
 /// What became of one light's photons: W for each channel [r, g, b].
@@ -184,7 +198,14 @@ mod tests {
         let path = folder.path().join("statistics.json");
         let statistics = Statistics {
             version: "0.1.0".into(),
-            maps: vec![Map { object: "floor".into(), width: 8, height: 4, layers: 1 }],
+            maps: vec![Map {
+                object: "floor".into(),
+                width: 8,
+                height: 4,
+                layers: 1,
+                texel_width: 0.5,
+                ..Map::default()
+            }],
             lights: vec![LightLedger { name: "lamp".into(), residue: [0, -1, 0], ..Default::default() }],
             ..Default::default()
         };
@@ -192,6 +213,7 @@ mod tests {
         let read: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
         assert_eq!(read["version"], "0.1.0");
         assert_eq!(read["maps"][0]["object"], "floor");
+        assert_eq!(read["maps"][0]["texel_width"], 0.5);
         assert_eq!(read["lights"][0]["residue"][1], -1);
         for key in ["scene", "seed", "time_limit_reached", "adapter", "size", "seconds", "photons", "camera"] {
             assert!(!read[key].is_null(), "{key}");

@@ -5,18 +5,18 @@ use diacaustic_shaders::{CAMERA, CameraParams, PathParams, Sighting, TILE_SIZE};
 
 use crate::{
     Error, Film, LayerImage,
-    energy_map::EnergyMaps,
     features::{Features, Pipelines},
     film::filter_inverse_cdf,
     gpu::{Binding, Gpu, Purpose, wide},
     layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
+    map_sums::EnergyMaps,
     random::combine,
 };
 
 /// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
 const PARAMS: [Binding; 2] = [Binding::Uniform; 2];
-const OUTPUTS: [Binding; 6] = [
+pub(crate) const OUTPUTS: [Binding; 6] = [
     Binding::Texels,
     Binding::ReadWrite,
     Binding::ReadWrite,
@@ -25,9 +25,12 @@ const OUTPUTS: [Binding; 6] = [
     Binding::ReadWrite,
 ];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
-const SIGHTINGS: Purpose = Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false" };
-/// Paths along each side of the picture that note what they see.
-const SIGHTINGS_SIDE: u32 = 128;
+const SIGHTINGS: Purpose =
+    Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false and map_size" };
+/// Paths along each side of the picture that note what they see, multiples of [`TILE_SIZE`]: at least, at most.
+const SIGHTINGS_SIDES: std::ops::RangeInclusive<u32> = 128..=512;
+/// Pixels along each axis for each of them.
+const PIXELS_PER_SIGHTING: u32 = 4;
 /// The stream of these paths' seeds.
 const SIGHTINGS_SEED_STREAM: u32 = 4;
 /// The stream of the camera pass's seeds.
@@ -56,14 +59,23 @@ pub(crate) struct Samples {
     pipeline: wgpu::ComputePipeline,
     camera: CameraParams,
     /// The params of every sample's paths, but for its index.
-    paths: PathParams,
+    pub paths: PathParams,
     camera_params: wgpu::Buffer,
     path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
     layers: LayerSums,
     params_group: wgpu::BindGroup,
-    outputs_group: wgpu::BindGroup,
+    /// None until there are maps.
+    outputs_group: Option<wgpu::BindGroup>,
+}
+
+/// What camera paths see of the energy maps.
+#[derive(Debug, Default)]
+pub(crate) struct Sightings {
+    pub list: Vec<Sighting>,
+    /// Pixels for each.
+    pub pixels: f64,
 }
 
 impl Samples {
@@ -73,20 +85,18 @@ impl Samples {
         scene: &Scene,
         lights: &Lights,
         features: Features,
-        maps: &EnergyMaps,
     ) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
         let path_params = gpu.uniform::<PathParams>("camera paths");
         let camera_params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
-        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
             camera: camera_of(scene),
             paths: paths_of(scene, lights),
             params_group: gpu.bind(&pass.params_layout, &[&path_params, &camera_params]),
-            outputs_group: outputs_group(gpu, pass, maps, &film, &layers, &no_sightings),
+            outputs_group: None,
             path_params,
             camera_params,
             film,
@@ -94,7 +104,15 @@ impl Samples {
         })
     }
 
-    /// What camera paths spread over the picture see of the energy maps, which are empty yet. Blocks.
+    /// Lets samples read these maps from now on.
+    pub fn show(&mut self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> Result<(), Error> {
+        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        self.outputs_group =
+            Some(outputs_group(gpu, &pass.outputs_layout, maps, &self.film, &self.layers, &no_sightings));
+        Ok(())
+    }
+
+    /// What camera paths spread over the picture see of the energy maps, which are `empty` yet. Blocks.
     pub fn sightings(
         &self,
         gpu: &Gpu,
@@ -102,24 +120,29 @@ impl Samples {
         features: Features,
         scene_group: &wgpu::BindGroup,
         settings: &RenderSettings,
-        maps: &EnergyMaps,
-    ) -> Result<Vec<Sighting>, Error> {
-        let camera = CameraParams { width: SIGHTINGS_SIDE, height: SIGHTINGS_SIDE, ..self.camera };
+        empty: &EnergyMaps,
+    ) -> Result<Sightings, Error> {
+        let [width, height] = [settings.width, settings.height].map(|pixels| {
+            let side = pixels.div_ceil(PIXELS_PER_SIGHTING).next_multiple_of(TILE_SIZE);
+            side.clamp(*SIGHTINGS_SIDES.start(), *SIGHTINGS_SIDES.end())
+        });
+        let camera = CameraParams { width, height, ..self.camera };
         let seen_paths = PathParams {
             max_bounces: settings.max_bounces.min(1),
             seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
             ..self.paths
         };
-        let paths = u64::from(SIGHTINGS_SIDE * SIGHTINGS_SIDE);
+        let paths = u64::from(width * height);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
-        let outputs = outputs_group(gpu, pass, maps, &film, &no_layers, &sightings);
+        let outputs = outputs_group(gpu, &pass.outputs_layout, empty, &film, &no_layers, &sightings);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
         self.write_params(gpu, &camera, &seen_paths);
-        let tiles = SIGHTINGS_SIDE / TILE_SIZE;
-        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
-        gpu.read(&sightings, 0..paths)
+        let groups = [width, height].map(|side| side / TILE_SIZE);
+        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], groups);
+        let pixels = f64::from(settings.width) * f64::from(settings.height) / paths as f64;
+        Ok(Sightings { list: gpu.read(&sightings, 0..paths)?, pixels })
     }
 
     /// What samples accumulate in.
@@ -134,8 +157,9 @@ impl Samples {
 
     /// Submits one sample of every pixel.
     pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, sample_index: u32) {
+        let Some(outputs) = &self.outputs_group else { return };
         self.write_params(gpu, &self.camera, &PathParams { sample_index, ..self.paths });
-        let groups = [scene_group, &self.params_group, &self.outputs_group];
+        let groups = [scene_group, &self.params_group, outputs];
         let tiles = [self.camera.width.div_ceil(TILE_SIZE), self.camera.height.div_ceil(TILE_SIZE)];
         gpu.dispatch(&self.pipeline, &groups, tiles);
     }
@@ -176,9 +200,10 @@ impl Samples {
     }
 }
 
-fn outputs_group(
+/// Binds what paths read of the maps and accumulate in.
+pub(crate) fn outputs_group(
     gpu: &Gpu,
-    pass: &CameraPass,
+    layout: &wgpu::BindGroupLayout,
     maps: &EnergyMaps,
     film: &wgpu::Buffer,
     layers: &LayerSums,
@@ -187,7 +212,7 @@ fn outputs_group(
     let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
     let buffers =
         [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
-    gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
+    gpu.bind_resources(layout, [irradiance].into_iter().chain(buffers).collect())
 }
 
 fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {

@@ -25,6 +25,17 @@ pub enum Error {
         /// What would make it fit.
         remedy: &'static str,
     },
+    /// The energy maps are larger than the device allows.
+    #[error(
+        "the energy maps of each light group take {asked} bytes and the device allows {available}: lower map_size, or \
+         keep fewer light groups apart"
+    )]
+    MapsTooLarge {
+        /// Bytes of the sums asked for.
+        asked: u64,
+        /// Bytes that the device allows.
+        available: u64,
+    },
     /// The device's limits are lower than [`crate::Renderer::required_limits`].
     #[error("the device allows {found} for the limit {limit} and diacaustic needs {needed}")]
     DeviceTooSmall {

@@ -4,15 +4,14 @@ use std::time::{Duration, Instant};
 
 use diacaustic_scene::Scene;
 use diacaustic_surface::{
-    BoundingSphere, Bvh, caster_bounds, light_surfaces, scene_bounds, separate_touching, world_triangles,
+    BoundingSphere, Bvh, caster_bounds, check_map_uvs, light_surfaces, scene_bounds, separate_touching, world_triangles,
 };
 
 use crate::{
     Error,
-    energy_map::{MapPlacement, place_maps},
     features::Features,
-    layers::kept_groups,
     lights::Lights,
+    map_plan::{MapPlan, plan_maps},
     paper,
 };
 
@@ -23,7 +22,8 @@ pub(crate) struct HostScene {
     pub triangles: usize,
     /// The hierarchy over them and the surfaces of lights.
     pub bvh: Bvh,
-    pub placements: Vec<Option<MapPlacement>>,
+    /// The energy maps, object by object.
+    pub maps: Vec<Option<MapPlan>>,
     /// Bounding spheres of what casts light on.
     pub casters: Vec<BoundingSphere>,
     /// A sphere around everything.
@@ -35,8 +35,8 @@ pub(crate) struct HostScene {
 }
 
 impl HostScene {
-    /// Builds all of it; the energy maps whose size the scene leaves open take at most `map_budget` bytes.
-    pub fn build(scene: &Scene, map_budget: u64) -> Result<Self, Error> {
+    /// Builds all of it.
+    pub fn build(scene: &Scene) -> Result<Self, Error> {
         let start = Instant::now();
         let mut triangles = world_triangles(scene);
         separate_touching(scene, &mut triangles);
@@ -46,9 +46,8 @@ impl HostScene {
         let bvh_time = start.elapsed();
 
         let start = Instant::now();
-        // Each light group has maps of its own.
-        let map_budget = map_budget / kept_groups(scene).names.len() as u64;
-        let placements = place_maps(scene, &triangles[..of_objects], map_budget);
+        check_map_uvs(scene)?;
+        let maps = plan_maps(scene, &triangles[..of_objects]);
         let maps_time = start.elapsed();
 
         let around = scene_bounds(scene, &triangles);
@@ -58,7 +57,7 @@ impl HostScene {
         }
         Ok(Self {
             triangles: of_objects,
-            placements,
+            maps,
             casters: caster_bounds(scene, &triangles[..of_objects]),
             around,
             features: Features::of(scene, &lights),

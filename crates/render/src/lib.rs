@@ -19,10 +19,11 @@
 
 pub use diacaustic_scene as scene;
 pub use diacaustic_shaders::AimTarget;
-pub use diacaustic_surface::MapLayout;
+pub use diacaustic_surface::{MapLayout, MapSquare, MapTile, MapTiles};
 pub use {glam, wgpu};
 
 mod aim;
+mod bake;
 mod camera_pass;
 mod display_pass;
 mod energy_map;
@@ -35,6 +36,10 @@ mod guide;
 mod host_scene;
 mod layers;
 mod lights;
+mod map_placement;
+mod map_plan;
+mod map_records;
+mod map_sums;
 mod material_records;
 mod paper;
 mod photon_pass;
@@ -47,8 +52,10 @@ mod self_test;
 mod spectra_records;
 mod statistics;
 mod texture_records;
+mod tile_choice;
 
 pub use aim::Emission;
+pub use bake::{BakeOptions, Lightmap, SurfacePlace, base_reflectance};
 pub use display_pass::RenderParams;
 pub use energy_map::EnergyMap;
 pub use error::Error;
@@ -56,6 +63,6 @@ pub use film::Film;
 pub use guide::{Guide, GuideTable};
 pub use layers::{FARTHEST_DEPTH, LayerChannel, LayerImage, LayerValues};
 pub use ray_query::{Ray, RayBatch, RayHit};
-pub use renderer::{Renderer, RendererOptions};
+pub use renderer::{DEFAULT_MAP_BUDGET, Renderer, RendererOptions};
 pub use self_test::LoopLimit;
 pub use statistics::{Ledger, LightReport, MapSize, PilotReport, SceneReport, Statistics};

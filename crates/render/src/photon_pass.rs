@@ -7,15 +7,16 @@ use diacaustic_shaders::{
     AimTarget, LOST, Landing, MAX_AIM_TARGETS, PHOTONS, PhotonParams, Sighting, WORKGROUP_SIZE, ledger,
 };
 use diacaustic_surface::BoundingSphere;
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec2};
 
 use crate::{
     Error, Guide, Ledger, LoopLimit, PilotReport,
     aim::{Block, Emission, blocks},
-    energy_map::EnergyMaps,
     features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose, wide},
     lights::{Emitter, Lights},
+    map_plan::MapPlan,
+    map_sums::EnergyMaps,
     paper,
     pilot::{Pilot, PilotRound},
     random::combine,
@@ -24,9 +25,9 @@ use crate::{
 
 /// The bindings of `shaders/layout/photon_pass.wgsl`.
 const PARAMS: [Binding; 2] = [Binding::Uniform, Binding::Records];
-const OUTPUTS: [Binding; 3] = [Binding::ReadWrite; 3];
+const OUTPUTS: [Binding; 4] = [Binding::ReadWrite; 4];
 const GUIDE: Purpose = Purpose { what: "a light's guide", remedy: "set guiding = false" };
-const LANDINGS: Purpose = Purpose { what: "the pilot's photons", remedy: "set guiding = false" };
+const LANDINGS: Purpose = Purpose { what: "the pilot's photons", remedy: "set guiding = false and map_size" };
 const LEDGER: Purpose = Purpose { what: "the lights' ledgers", remedy: "use fewer lights" };
 /// Words of the ledger before its accounts: rays (low, high), unfinished, deposits (low, high).
 const COUNTERS: u64 = 5;
@@ -103,8 +104,25 @@ pub(crate) struct Photons {
     greatest_weight: f32,
     params: wgpu::Buffer,
     pub ledger: wgpu::Buffer,
-    /// For each light group, what its photons write.
+    /// For each light group, what its photons write; none until there are maps.
     outputs_groups: Vec<wgpu::BindGroup>,
+}
+
+/// What the pilots of all lights have found.
+#[derive(Debug, Default)]
+pub(crate) struct Flights {
+    /// For each light its rounds.
+    rounds: Vec<Vec<PilotRound>>,
+    pub report: PilotReport,
+}
+
+impl Flights {
+    /// Where photons came down on receivers through casters: the record of the map's layer, and the place on its plane.
+    pub fn landings(&self) -> impl Iterator<Item = (u32, DVec2)> {
+        let landings = self.rounds.iter().flatten().flat_map(|round| &round.landings);
+        let landed = landings.filter(|landing| landing.layer < LOST);
+        landed.map(|landing| (landing.layer, Vec2::new(landing.x, landing.y).as_dvec2()))
+    }
 }
 
 /// What photons need to know of a scene.
@@ -120,13 +138,7 @@ pub(crate) struct PhotonScene<'a> {
 }
 
 impl Photons {
-    pub fn new(
-        gpu: &Gpu,
-        pass: &mut PhotonPass,
-        scene: &PhotonScene,
-        maps: &EnergyMaps,
-        loop_limit: LoopLimit,
-    ) -> Result<Self, Error> {
+    pub fn new(gpu: &Gpu, pass: &mut PhotonPass, scene: &PhotonScene, loop_limit: LoopLimit) -> Result<Self, Error> {
         let guided = scene.settings.guiding;
         let params = gpu.uniform::<PhotonParams>("photons");
         let mut lights = Vec::new();
@@ -151,7 +163,6 @@ impl Photons {
         }
         let words = COUNTERS + (scene.lights.account_count.max(1) * LIGHT_WORDS) as u64;
         let ledger = gpu.zeroed(LEDGER, words * 4)?;
-        let no_landings = gpu.zeroed(LANDINGS, size_of::<Landing>() as u64)?;
         let units_per_watt = units_per_watt(&lights, turns, scene.greatest_weight);
         Ok(Self {
             lights,
@@ -172,9 +183,7 @@ impl Photons {
             photons_per_invocation: loop_limit.photons_per_invocation(scene.settings),
             guided,
             units_per_watt,
-            outputs_groups: (0..scene.lights.groups.names.len())
-                .map(|group| outputs_group(gpu, pass, maps, group, &ledger, &no_landings))
-                .collect(),
+            outputs_groups: Vec::new(),
             params,
             ledger,
         })
@@ -196,19 +205,29 @@ impl Photons {
         light.filter(|_| self.guided).map(|light| &light.guide)
     }
 
-    /// Flies a pilot of every light, and makes the guides that the photons follow from now on. Blocks.
-    pub fn learn(
+    /// Lets photons fall into the maps of each of `groups` light groups from now on.
+    pub fn fill(&mut self, gpu: &Gpu, pass: &PhotonPass, maps: &EnergyMaps, groups: usize) -> Result<(), Error> {
+        let no_landings = gpu.zeroed(LANDINGS, size_of::<Landing>() as u64)?;
+        let group = |group| outputs_group(gpu, pass, maps, group, &self.ledger, &no_landings);
+        self.outputs_groups = (0..groups).map(group).collect();
+        Ok(())
+    }
+
+    /// Flies a pilot of every light over the planes of maps that are `empty` yet, and makes the guides that the photons follow from now on, if
+    /// they are to be guided. Blocks.
+    pub fn fly_pilots(
         &mut self,
         gpu: &Gpu,
         pass: &PhotonPass,
         scene_group: &wgpu::BindGroup,
-        maps: &EnergyMaps,
+        empty: &EnergyMaps,
+        plans: &[Option<MapPlan>],
         sightings: &[Sighting],
-    ) -> Result<PilotReport, Error> {
+    ) -> Result<Flights, Error> {
         let count = 1u32 << pilot_round(self.lights.len());
         let landings = gpu.zeroed(LANDINGS, u64::from(count) * PILOT_ROUNDS as u64 * size_of::<Landing>() as u64)?;
-        let outputs = outputs_group(gpu, pass, maps, 0, &self.ledger, &landings);
-        let mut pilot = Pilot::new(&maps.placements, sightings);
+        let outputs = outputs_group(gpu, pass, empty, 0, &self.ledger, &landings);
+        let mut pilot = Pilot::new(plans, sightings);
         let mut flights = vec![Vec::new(); self.lights.len()];
         for round in 0..PILOT_ROUNDS as u32 {
             let photons = round * count..(round + 1) * count;
@@ -219,6 +238,9 @@ impl Photons {
                 let landed = gpu.read(&landings, photons.start.into()..photons.end.into())?;
                 rounds.push(PilotRound { guide: light.guide.clone(), landings: landed });
             }
+            if !self.guided {
+                continue;
+            }
             pilot.measure_flux(&flights);
             let error_weights = pilot.error_weights();
             for (light, rounds) in self.lights.iter_mut().zip(&flights) {
@@ -228,11 +250,12 @@ impl Photons {
         }
         self.units_per_watt = units_per_watt(&self.lights, self.turns, self.greatest_weight);
         self.template.units_per_watt = self.units_per_watt;
-        Ok(PilotReport {
+        let report = PilotReport {
             photons: flights.iter().flatten().map(|round| round.landings.len() as u64).sum(),
             unguided_share: unguided_share(&self.lights, &flights),
             ..PilotReport::default()
-        })
+        };
+        Ok(Flights { rounds: flights, report })
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.
@@ -347,7 +370,8 @@ fn outputs_group(
     ledger: &wgpu::Buffer,
     landings: &wgpu::Buffer,
 ) -> wgpu::BindGroup {
-    let resources = vec![maps.sums_of(group), ledger.as_entire_binding(), landings.as_entire_binding()];
+    let [low, high] = maps.sums_of(group);
+    let resources = vec![low, high, ledger.as_entire_binding(), landings.as_entire_binding()];
     gpu.bind_resources(&pass.outputs_layout, resources)
 }
 
@@ -389,7 +413,7 @@ fn pilot_round(lights: usize) -> u32 {
 fn unguided_share(lights: &[PhotonLight], flights: &[Vec<PilotRound>]) -> f64 {
     let shares = lights.iter().zip(flights).map(|(light, rounds)| {
         let landings = &rounds[0].landings;
-        let landed = landings.iter().filter(|landing| landing.texel < LOST).count();
+        let landed = landings.iter().filter(|landing| landing.layer < LOST).count();
         (f64::from(light.emitter.photon_share), landed as f64 / landings.len() as f64)
     });
     let (sum, turns) = shares.fold((0.0, 0.0), |(sum, turns), (turn, share)| (sum + turn * share, turns + turn));

@@ -2,10 +2,11 @@
 //! docs/photon-paths.md, "Guide".
 
 use diacaustic_shaders::{Landing, NONE, Sighting};
+use diacaustic_surface::{MapSquare, MapTiles};
 
 use crate::{
-    energy_map::MapPlacement,
     guide::{Guide, GuideTable},
+    map_plan::MapPlan,
 };
 
 /// Regions along the longer side of a map.
@@ -39,7 +40,8 @@ pub(crate) struct PilotRound {
 /// What the pilots of all lights have found.
 #[derive(Debug)]
 pub(crate) struct Pilot {
-    maps: Vec<MapRegions>,
+    /// An entry for each object.
+    maps: Vec<Option<MapRegions>>,
     /// Flux that lands in each region, W.
     flux: Vec<f64>,
     /// Surface of each region, m².
@@ -51,34 +53,28 @@ pub(crate) struct Pilot {
     weight: Vec<f64>,
 }
 
-/// One map's texels in square blocks.
+/// One map's plane in rectangles, which are nearly square.
 #[derive(Debug)]
 struct MapRegions {
-    first_texel: u64,
-    texels: u64,
-    width: u32,
-    height: u32,
-    /// Texels along a block's side.
-    block: u32,
     columns: usize,
     rows: usize,
     layers: usize,
+    /// Regions for each unit of the plane, along x and y, from middle to middle.
+    scale: [f64; 2],
     first_region: usize,
 }
 
 impl MapRegions {
-    fn new(map: &MapPlacement, first_region: usize) -> Self {
-        let (width, height) = (map.layout.width, map.layout.height);
-        let block = width.max(height).div_ceil(REGIONS_ALONG_MAP);
+    fn new(plan: &MapPlan, first_region: usize) -> Self {
+        let (width, height) = (plan.layout.width, plan.layout.height);
+        // Regions stand around the texels of a coarse map, whose bilinear weights give their areas.
+        let block = (width.max(height) - 1).div_ceil(REGIONS_ALONG_MAP - 1);
+        let cells = [width, height].map(|texels| (texels - 1).div_ceil(block));
         Self {
-            first_texel: map.first_texel,
-            texels: map.layout.texel_count(),
-            width,
-            height,
-            block,
-            columns: width.div_ceil(block) as usize,
-            rows: height.div_ceil(block) as usize,
-            layers: map.layout.layers as usize,
+            columns: cells[0] as usize + 1,
+            rows: cells[1] as usize + 1,
+            layers: plan.layout.layers as usize,
+            scale: [f64::from(cells[0]) / f64::from(width - 1), f64::from(cells[1]) / f64::from(height - 1)],
             first_region,
         }
     }
@@ -87,55 +83,57 @@ impl MapRegions {
         self.first_region..self.first_region + self.layers * self.rows * self.columns
     }
 
-    /// The region of a texel, which is counted from the map's first.
-    fn region_of(&self, texel: u64) -> usize {
-        let (width, height) = (u64::from(self.width), u64::from(self.height));
-        let (column, row, layer) = (texel % width, texel / width % height, texel / (width * height));
-        let block = u64::from(self.block);
-        self.first_region
-            + (layer as usize * self.rows + (row / block) as usize) * self.columns
-            + (column / block) as usize
+    /// The regions as texels of tiles.
+    fn tiles(&self, plan: &MapPlan) -> MapTiles {
+        let cells = [self.columns as u32 - 1, self.rows as u32 - 1];
+        let squares = (0..plan.layout.layers).map(|layer| (MapSquare { layer, level: 0, x: 0, y: 0 }, cells));
+        MapTiles::new(&plan.layout, [1, 1], squares)
+    }
+
+    /// The region of a place of the plane; `record` is that of its layer.
+    fn region_of(&self, record: u32, place: [f32; 2]) -> usize {
+        let along = |axis: usize, count: usize| {
+            let at = (f64::from(place[axis]) * self.scale[axis]).round();
+            at.clamp(0.0, (count - 1) as f64) as usize
+        };
+        let layer = (record as usize % 2).min(self.layers - 1);
+        self.first_region + (layer * self.rows + along(1, self.rows)) * self.columns + along(0, self.columns)
     }
 }
 
 impl Pilot {
-    pub fn new(placements: &[Option<MapPlacement>], sightings: &[Sighting]) -> Self {
-        let mut maps: Vec<MapRegions> = Vec::new();
-        for map in placements.iter().flatten() {
-            let first_region = maps.last().map_or(0, |map| map.regions().end);
-            maps.push(MapRegions::new(map, first_region));
-        }
-        let count = maps.last().map_or(0, |map| map.regions().end);
+    pub fn new(plans: &[Option<MapPlan>], sightings: &[Sighting]) -> Self {
+        let mut count = 0;
+        let maps: Vec<Option<MapRegions>> = plans
+            .iter()
+            .map(|plan| {
+                let map = MapRegions::new(plan.as_ref()?, count);
+                count = map.regions().end;
+                Some(map)
+            })
+            .collect();
+        let areas = maps.iter().zip(plans).filter_map(|(map, plan)| Some((map.as_ref()?, plan.as_ref()?)));
+        let area: Vec<f64> = areas.flat_map(|(map, plan)| plan.texel_areas(&map.tiles(plan))).collect();
         let mut pilot = Self {
             flux: vec![0.0; count],
-            area: vec![0.0; count],
+            area: smooth(&maps, &area),
             seen: vec![0.0; count],
             radiance: vec![0.0; count],
             weight: vec![0.0; count],
             maps,
         };
-        pilot.measure_areas(placements);
         pilot.note_sightings(sightings);
         pilot
     }
 
-    fn measure_areas(&mut self, placements: &[Option<MapPlacement>]) {
-        for (map, placement) in self.maps.iter().zip(placements.iter().flatten()) {
-            for texel in 0..map.texels {
-                self.area[map.region_of(texel)] += placement.areas[texel as usize % placement.areas.len()];
-            }
-        }
-        self.area = self.smoothed(&self.area);
-    }
-
     fn note_sightings(&mut self, sightings: &[Sighting]) {
         for sighting in sightings {
-            if let Some(region) = self.region_of(sighting.texel) {
+            if let Some(region) = self.region_of(sighting.layer, [sighting.x, sighting.y]) {
                 self.seen[region] += 1.0;
                 self.radiance[region] += f64::from(sighting.radiance);
                 self.weight[region] += f64::from(sighting.weight);
             }
-            if let Some(region) = self.region_of(sighting.bounced_texel) {
+            if let Some(region) = self.region_of(sighting.bounced_layer, [sighting.bounced_x, sighting.bounced_y]) {
                 self.seen[region] += BOUNCED_SIGHTING;
             }
         }
@@ -144,10 +142,10 @@ impl Pilot {
         }
     }
 
-    fn region_of(&self, texel: u32) -> Option<usize> {
-        let texel = u64::from(texel);
-        let map = self.maps.iter().find(|map| (map.first_texel..map.first_texel + map.texels).contains(&texel))?;
-        Some(map.region_of(texel - map.first_texel))
+    /// The region of a place; `record` is that of its layer, or says that there is none.
+    fn region_of(&self, record: u32, place: [f32; 2]) -> Option<usize> {
+        let map = self.maps.get(record as usize / 2)?.as_ref()?;
+        Some(map.region_of(record, place))
     }
 
     /// Estimates the flux in each region from all rounds of every light's pilot.
@@ -156,12 +154,12 @@ impl Pilot {
         for rounds in flights {
             let photons: usize = rounds.iter().map(|round| round.landings.len()).sum();
             for landing in rounds.iter().flat_map(|round| &round.landings) {
-                if let Some(region) = self.region_of(landing.texel) {
+                if let Some(region) = self.region_of(landing.layer, [landing.x, landing.y]) {
                     self.flux[region] += f64::from(landing.flux) / photons as f64;
                 }
             }
         }
-        self.flux = self.smoothed(&self.flux);
+        self.flux = smooth(&self.maps, &self.flux);
     }
 
     /// For each region, the error in the picture for the square of a photon's flux, in arbitrary units.
@@ -190,11 +188,11 @@ impl Pilot {
             for landing in landings {
                 let (aim_cell, place_cell) = (landing.aim_cell as usize, landing.place_cell as usize);
                 let (aim_density, place_density) = (guide.aim.density(aim_cell), guide.place.density(place_cell));
-                let region = self.region_of(landing.texel);
+                let region = self.region_of(landing.layer, [landing.x, landing.y]);
                 // What the photon would have carried without a guide.
                 let flux = f64::from(landing.flux) * aim_density * place_density;
                 let error = region.map(|region| flux * flux * error_weights[region]);
-                let met_caster = landing.texel != NONE;
+                let met_caster = landing.layer != NONE;
                 // Each table takes the mean over the other's square.
                 aim.add(aim_cell, met_caster, error.map(|error| error / place_density));
                 place.add(place_cell, met_caster, error.map(|error| error / aim_density));
@@ -203,16 +201,12 @@ impl Pilot {
         let even_share = if even.place.cells() > 1 { EVEN_SHARE_OF_TWO } else { EVEN_SHARE };
         Guide { aim: aim.table(even_share), place: place.table(even_share) }
     }
-
-    fn smoothed(&self, sums: &[f64]) -> Vec<f64> {
-        smooth(&self.maps, sums)
-    }
 }
 
 /// Each map's sums after a binomial filter over 3 × 3 regions.
-fn smooth(maps: &[MapRegions], sums: &[f64]) -> Vec<f64> {
+fn smooth(maps: &[Option<MapRegions>], sums: &[f64]) -> Vec<f64> {
     let mut result = Vec::with_capacity(sums.len());
-    for map in maps {
+    for map in maps.iter().flatten() {
         for layer in sums[map.regions()].chunks_exact(map.rows * map.columns) {
             result.extend(binomial(layer, map.rows, map.columns));
         }

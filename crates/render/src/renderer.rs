@@ -8,26 +8,34 @@ use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
-    Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, LoopLimit, MapSize, PilotReport, RenderParams,
-    SceneReport, Statistics,
-    camera_pass::{CameraPass, Samples},
+    BakeOptions, Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, Lightmap, LoopLimit, PilotReport,
+    RenderParams, SceneReport, Statistics,
+    bake::{BakePass, BakeScene, bake},
+    camera_pass::{CameraPass, Samples, Sightings},
     display_pass::DisplayPass,
-    energy_map::{EnergyMaps, ResolvePass},
+    features::Features,
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
-    photon_pass::{PhotonPass, PhotonScene, Photons},
+    map_placement::{map_sizes, place_maps, texel_budget},
+    map_sums::{EnergyMaps, ResolvePass, most_texels},
+    photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
+    tile_choice::choose_tiles,
 };
 
 /// What is set once for a renderer.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RendererOptions {
-    /// Bytes that the sums of all energy maps whose size the scene leaves open may take; what the device can bind if none.
+    /// Bytes that the sums of all energy maps whose size the scene leaves open may take; if none, what the scene says, else
+    /// [`DEFAULT_MAP_BUDGET`].
     pub map_budget: Option<u64>,
 }
+
+/// Bytes that the sums of energy maps may take, if nobody says: 256 MiB.
+pub const DEFAULT_MAP_BUDGET: u64 = 256 << 20;
 
 /// Dispatches that one call submits before it waits for them.
 pub(crate) const MOST_IN_FLIGHT: u32 = 256;
@@ -45,6 +53,7 @@ pub struct Renderer {
     photon_pass: PhotonPass,
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
+    bake_pass: BakePass,
     display_pass: DisplayPass,
     query_pass: QueryPass,
     scene: Option<OnDevice>,
@@ -56,6 +65,7 @@ struct OnDevice {
     scene: Scene,
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
+    features: Features,
     buffers: SceneBuffers,
     maps: EnergyMaps,
     photons: Photons,
@@ -64,6 +74,18 @@ struct OnDevice {
     sample_count: u32,
     /// Whether photons came since the sums last became irradiance.
     unresolved: bool,
+}
+
+impl OnDevice {
+    /// Turns the sums of the photons so far into irradiance, if that is not done.
+    fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
+        if self.unresolved {
+            // In the profile `paper` photons do not share the light's flux.
+            let sharing = if self.scene.settings.paper.is_some() { 1 } else { self.photon_count };
+            pass.run(gpu, &self.maps, self.photons.units_per_watt, sharing);
+            self.unresolved = false;
+        }
+    }
 }
 
 impl Renderer {
@@ -87,6 +109,7 @@ impl Renderer {
                 photon_pass: PhotonPass::new(&gpu, &scene_layout),
                 resolve_pass: ResolvePass::new(&gpu),
                 camera_pass: CameraPass::new(&gpu, &scene_layout),
+                bake_pass: BakePass::new(&gpu, &scene_layout),
                 display_pass: DisplayPass::new(&gpu),
                 query_pass: QueryPass::new(&gpu, &scene_layout),
                 gpu: gpu.clone(),
@@ -107,32 +130,36 @@ impl Renderer {
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
-        let limits = self.gpu.device.limits();
-        let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let host = HostScene::build(scene, self.options.map_budget.unwrap_or(u64::MAX).min(bindable))?;
-        let (triangles, bvh_nodes) = (host.triangles, host.bvh.nodes.len());
-        let (bvh_time, maps_time) = (host.bvh_time, host.maps_time);
-        let lights = light_reports(scene, &host.lights);
-        let (on_device, pilot) = self.gpu.clone().guarded(|| self.upload(scene, host))?;
+        let host = HostScene::build(scene)?;
         let report = SceneReport {
-            triangles,
-            bvh_nodes,
-            bvh_time,
-            maps_time,
-            pilot,
-            device_bytes: on_device.buffers.bytes + on_device.maps.bytes + on_device.samples.bytes(),
-            maps: map_sizes(&on_device.maps),
-            photon_turns: on_device.photons.turns,
-            lights,
+            triangles: host.triangles,
+            bvh_nodes: host.bvh.nodes.len(),
+            bvh_time: host.bvh_time,
+            maps_time: host.maps_time,
+            map_budget: self.map_budget(scene),
+            lights: light_reports(scene, &host.lights),
+            ..SceneReport::default()
         };
+        let (on_device, report) = self.gpu.clone().guarded(|| self.upload(scene, host, report))?;
         self.scene = Some(on_device);
         Ok(report)
     }
 
-    /// Sends a scene to the device, and flies the pilots if photons are guided.
-    fn upload(&mut self, scene: &Scene, host: HostScene) -> Result<(OnDevice, Option<PilotReport>), Error> {
+    /// Bytes that the sums of maps whose size the scene leaves open may take.
+    fn map_budget(&self, scene: &Scene) -> u64 {
+        let of_scene = scene.settings.map_budget.map(|mebibytes| u64::from(mebibytes) << 20);
+        self.options.map_budget.or(of_scene).unwrap_or(DEFAULT_MAP_BUDGET)
+    }
+
+    /// Sends a scene to the device, flies the pilots if photons are guided or a map's size is open, and then places the maps.
+    fn upload(
+        &mut self,
+        scene: &Scene,
+        host: HostScene,
+        mut report: SceneReport,
+    ) -> Result<(OnDevice, SceneReport), Error> {
         let gpu = &self.gpu;
-        let buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
+        let mut buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
         let photons_of = PhotonScene {
             settings: &scene.settings,
             lights: &host.lights,
@@ -141,30 +168,45 @@ impl Renderer {
             casters: &host.casters,
             around: host.around,
         };
-        let maps = EnergyMaps::new(gpu, &self.resolve_pass, host.placements, host.lights.groups.names.len())?;
-        let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, &maps, self.loop_limit)?;
-        let samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features, &maps)?;
-        let mut pilot = None;
-        if scene.settings.guiding && photons.can_emit() {
+        let groups = host.lights.groups.names.len();
+        let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, self.loop_limit)?;
+        let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
+        let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
+        let is_open = host.maps.iter().flatten().any(|plan| !plan.is_stated);
+        if photons.can_emit() && (scene.settings.guiding || is_open) {
             let start = Instant::now();
             let group = &buffers.bind_group;
-            let sightings =
-                samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &maps)?;
-            let report = photons.learn(gpu, &self.photon_pass, group, &maps, &sightings)?;
-            pilot = Some(PilotReport { time: start.elapsed(), ..report });
+            let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), 1)?;
+            sightings = samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &empty)?;
+            flights = photons.fly_pilots(gpu, &self.photon_pass, group, &empty, &host.maps, &sightings.list)?;
+            report.pilot = Some(PilotReport { time: start.elapsed(), ..flights.report });
         }
+        let start = Instant::now();
+        let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), groups);
+        let choice = choose_tiles(&host.maps, &sightings.list, sightings.pixels, flights.landings(), budget);
+        report.maps = map_sizes(&host.maps, &choice);
+        let placements = place_maps(host.maps, choice, most_texels(&gpu.device.limits(), groups))?;
+        report.maps_time += start.elapsed();
+        let maps = EnergyMaps::new(gpu, &self.resolve_pass, placements, groups)?;
+        buffers.place_maps(gpu, &self.scene_layout, &maps)?;
+        photons.fill(gpu, &self.photon_pass, &maps, groups)?;
+        samples.show(gpu, &self.camera_pass, &maps)?;
+        report.map_bytes = maps.sums_bytes();
+        report.device_bytes = buffers.bytes + maps.bytes + samples.bytes();
+        report.photon_turns = photons.turns;
         let on_device = OnDevice {
             photons,
             samples,
             scene: scene.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
+            features: host.features,
             buffers,
             maps,
             photon_count: 0,
             sample_count: 0,
             unresolved: true,
         };
-        Ok((on_device, pilot))
+        Ok((on_device, report))
     }
 
     /// Submits photons of the given numbers; the same number is the same photon in every run. A scene whose lights cannot
@@ -194,13 +236,7 @@ impl Renderer {
     /// If no scene is set or the device fails.
     pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        if on_device.unresolved {
-            let units = on_device.photons.units_per_watt;
-            // In the profile `paper` photons do not share the light's flux.
-            let sharing = if on_device.scene.settings.paper.is_some() { 1 } else { on_device.photon_count };
-            self.resolve_pass.run(&self.gpu, &on_device.maps, units, sharing);
-            on_device.unresolved = false;
-        }
+        on_device.resolve(&self.gpu, &self.resolve_pass);
         for number in 1..=count {
             let group = &on_device.buffers.bind_group;
             on_device.samples.add(&self.gpu, group, on_device.sample_count);
@@ -254,6 +290,31 @@ impl Renderer {
         }
         let units = on_device.photons.units_per_watt;
         on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
+    }
+
+    /// Makes an object's lightmap: what light meets its surface, by the photons emitted so far and by paths that begin at each texel. It is of
+    /// all light groups together; none if the object is no receiver. No samples of the picture are needed.
+    ///
+    /// Compiles the kernel, if no scene before made use of the same. Blocks until the map is done: on a software adapter some microseconds for
+    /// each texel and sample.
+    ///
+    /// # Errors
+    /// If no scene is set, the scene has no such object, the device fails, or it cut invocations short.
+    pub fn bake(&mut self, object: usize, options: &BakeOptions) -> Result<Option<Lightmap>, Error> {
+        let Some(energy_map) = self.energy_map(object)? else { return Ok(None) };
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        let Some(placement) = &on_device.maps.placements[object] else { return Ok(None) };
+        let of = BakeScene {
+            scene: &on_device.scene,
+            origins: &on_device.origins,
+            features: on_device.features,
+            maps: &on_device.maps,
+            group: &on_device.buffers.bind_group,
+            paths: on_device.samples.paths,
+        };
+        let (gpu, pass) = (&self.gpu, &mut self.bake_pass);
+        gpu.guarded(|| bake(gpu, pass, &of, (object, &placement.layout), &energy_map, *options)).map(Some)
     }
 
     /// Reads what the device has counted. Blocks until all submitted work is done.
@@ -312,7 +373,8 @@ impl Renderer {
     /// If no scene is set.
     pub fn restart(&mut self) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        for buffer in [&on_device.maps.sums, &on_device.photons.ledger].into_iter().chain(on_device.samples.buffers()) {
+        on_device.maps.clear(&self.gpu);
+        for buffer in std::iter::once(&on_device.photons.ledger).chain(on_device.samples.buffers()) {
             self.gpu.clear(buffer);
         }
         on_device.photon_count = 0;
@@ -367,16 +429,6 @@ fn light_reports(scene: &Scene, lights: &Lights) -> Vec<LightReport> {
     let names = names.chain(emissive_materials(scene).into_iter().map(|(_, name)| name));
     let flux = |number: usize| lights.emitters.iter().find(|e| e.number == number).map_or(Vec3::ZERO, |e| e.flux);
     names.enumerate().map(|(number, name)| LightReport { name, flux: flux(number).to_array() }).collect()
-}
-
-fn map_sizes(maps: &EnergyMaps) -> Vec<MapSize> {
-    let placed = maps.placements.iter().enumerate();
-    placed
-        .filter_map(|(object, map)| {
-            let layout = &map.as_ref()?.layout;
-            Some(MapSize { object, width: layout.width, height: layout.height, layers: layout.layers })
-        })
-        .collect()
 }
 
 fn check_limits(found: &wgpu::Limits) -> Result<(), Error> {

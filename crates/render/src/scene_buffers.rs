@@ -3,15 +3,17 @@
 use diacaustic_scene::{LightKind, Material, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::{material_kind, triangle_flag};
-use diacaustic_surface::WorldTriangle;
+use diacaustic_surface::{MapSquare, MapTiles, WorldTriangle};
 use glam::Vec2;
 
 use crate::{
     Error,
-    energy_map::MapPlacement,
     gpu::{Binding, Gpu, Purpose, texture_bytes},
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
+    map_plan::MapPlan,
+    map_records::map_records,
+    map_sums::EnergyMaps,
     material_records::material,
     spectra_records::spectra_record,
     texture_records::TextureRecords,
@@ -23,7 +25,7 @@ pub(crate) const BINDINGS: [Binding; 13] = [Binding::Records; 13];
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
 const NODES: Purpose = Purpose { what: "the bounding volume hierarchy's nodes", remedy: "use fewer triangles" };
-const OBJECTS: Purpose = Purpose { what: "the scene's objects", remedy: "use fewer objects" };
+const MAPS: Purpose = Purpose { what: "the energy maps' tiles", remedy: "use fewer objects, or lower map_budget" };
 const MATERIALS: Purpose = Purpose { what: "the scene's materials", remedy: "use fewer materials" };
 const LIGHTS: Purpose = Purpose { what: "the scene's lights", remedy: "use fewer lights" };
 const EMITTING_TRIANGLES: Purpose = Purpose { what: "the triangles that shine", remedy: "use fewer triangles" };
@@ -41,11 +43,16 @@ const SPECTRA: Purpose =
 pub(crate) struct SceneBuffers {
     pub bind_group: wgpu::BindGroup,
     pub bytes: u64,
+    views: [wgpu::TextureView; BINDINGS.len()],
 }
 
+/// The binding of the maps' records.
+const MAPS_BINDING: usize = 3;
+
 impl SceneBuffers {
+    /// Sends a scene to the device. Its maps have a single cell of nothing until [`Self::place_maps`].
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, host: &HostScene) -> Result<Self, Error> {
-        let HostScene { bvh, lights, placements: maps, .. } = host;
+        let HostScene { bvh, lights, maps, .. } = host;
         let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
         let triangles: Vec<_> = bvh.triangles.iter().map(|t| triangle(scene, t)).collect();
         let corners: Vec<_> = bvh
@@ -53,7 +60,8 @@ impl SceneBuffers {
             .iter()
             .map(|t| triangle_corners(t, maps.get(t.object as usize).and_then(Option::as_ref)))
             .collect();
-        let objects: Vec<_> = maps.iter().map(object).collect();
+        let blank: Vec<_> = maps.iter().map(|plan| plan.as_ref().map(blank_tiles)).collect();
+        let blank = map_records(blank.iter().map(|tiles| tiles.as_ref().map(|tiles| (tiles, 0))));
         let mut materials: Vec<_> = (0..scene.materials.len()).map(|index| material(scene, index)).collect();
         for (order, (index, _)) in emissive_materials(scene).into_iter().enumerate() {
             materials[index].emission_pdf_area = lights.pdf_area(scene.lights.len() + order);
@@ -66,7 +74,7 @@ impl SceneBuffers {
             gpu.records(NODES, nodes)?,
             gpu.records(TRIANGLES, &triangles)?,
             gpu.records(CORNERS, &corners)?,
-            gpu.records(OBJECTS, &objects)?,
+            gpu.records(MAPS, &blank)?,
             gpu.records(MATERIALS, &materials)?,
             gpu.records(LIGHTS, &lights.records)?,
             gpu.records(EMITTING_TRIANGLES, &lights.triangles)?,
@@ -79,9 +87,28 @@ impl SceneBuffers {
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        let resources = views.iter().map(wgpu::BindingResource::TextureView).collect();
-        Ok(Self { bind_group: gpu.bind_resources(layout, resources), bytes })
+        Ok(Self { bind_group: bind_group(gpu, layout, &views), bytes, views })
     }
+
+    /// Tells the kernels where the maps' tiles lie.
+    pub fn place_maps(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, maps: &EnergyMaps) -> Result<(), Error> {
+        let placed = maps.placements.iter().map(|map| map.as_ref().map(|map| (&map.tiles, map.first_texel)));
+        let texture = gpu.records(MAPS, &map_records(placed))?;
+        self.bytes += texture_bytes(&texture);
+        self.views[MAPS_BINDING] = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        self.bind_group = bind_group(gpu, layout, &self.views);
+        Ok(())
+    }
+}
+
+fn bind_group(gpu: &Gpu, layout: &wgpu::BindGroupLayout, views: &[wgpu::TextureView]) -> wgpu::BindGroup {
+    gpu.bind_resources(layout, views.iter().map(wgpu::BindingResource::TextureView).collect())
+}
+
+/// One cell for each layer.
+fn blank_tiles(plan: &MapPlan) -> MapTiles {
+    let square = |layer| MapSquare { layer, level: 0, x: 0, y: 0 };
+    MapTiles::new(&plan.layout, [1, 1], (0..plan.layout.layers).map(|layer| (square(layer), [1, 1])))
 }
 
 fn triangle(scene: &Scene, t: &WorldTriangle) -> shaders::Triangle {
@@ -98,7 +125,7 @@ fn triangle(scene: &Scene, t: &WorldTriangle) -> shaders::Triangle {
     }
 }
 
-fn triangle_corners(t: &WorldTriangle, map: Option<&MapPlacement>) -> shaders::TriangleCorners {
+fn triangle_corners(t: &WorldTriangle, map: Option<&MapPlan>) -> shaders::TriangleCorners {
     let normals = t.normals.unwrap_or_default();
     let places = map.map_or([Vec2::ZERO; 3], |map| t.arrange(map.layout.corners[t.triangle as usize]));
     shaders::TriangleCorners {
@@ -107,18 +134,9 @@ fn triangle_corners(t: &WorldTriangle, map: Option<&MapPlacement>) -> shaders::T
         normal_1: normals[1].into(),
         texel_y_2: places[2].y,
         normal_2: normals[2].into(),
-        padding: 0,
+        charts: map.map_or(0, |map| map.layout.chart_count),
         texel_01: [places[0].x, places[0].y, places[1].x, places[1].y],
     }
-}
-
-fn object(map: &Option<MapPlacement>) -> shaders::Object {
-    map.as_ref().map_or_else(shaders::Object::default, |map| shaders::Object {
-        map_first_texel: map.first_texel as u32,
-        map_width: map.layout.width,
-        map_height: map.layout.height,
-        map_layers: map.layout.layers,
-    })
 }
 
 /// The surface of a light: black, and it shines.

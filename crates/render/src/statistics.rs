@@ -27,16 +27,26 @@ pub struct Ledger {
 }
 
 /// The size of one object's energy map.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapSize {
     /// Index of the object.
     pub object: usize,
-    /// Texels along x.
+    /// Texels along x of its layout; of a map whose size the scene leaves open those of the resampled map.
     pub width: u32,
-    /// Texels along y.
+    /// The same along y.
     pub height: u32,
     /// Layers.
     pub layers: u32,
+    /// Tiles of all layers.
+    pub tiles: u64,
+    /// Texels of all tiles.
+    pub texels: u64,
+    /// Width of its texels where the camera sees it, on average over pixels, metres; over all of it where it is not seen.
+    pub texel_width: f64,
+    /// What that would be without a budget. Greater `texel_width` says what was given up here.
+    pub wanted_texel_width: f64,
+    /// Width of its finest texels, metres.
+    pub finest_texel_width: f64,
 }
 
 /// Something that shines.
@@ -68,10 +78,14 @@ pub struct SceneReport {
     pub bvh_nodes: usize,
     /// Time to build the hierarchy.
     pub bvh_time: Duration,
-    /// Time to lay out the maps and integrate their texels' areas.
+    /// Time to lay out the maps, choose their tiles and integrate their texels' areas.
     pub maps_time: Duration,
-    /// The pilots; none if photons are not guided.
+    /// The pilots; none if photons are not guided and every map has a stated size, or no light reaches a caster.
     pub pilot: Option<PilotReport>,
+    /// Bytes that the sums of all maps take on the device, those of each light group apart.
+    pub map_bytes: u64,
+    /// Bytes that the sums of maps whose size the scene leaves open may take.
+    pub map_budget: u64,
     /// Bytes of the scene, the maps and the film on the device.
     pub device_bytes: u64,
     /// The maps.

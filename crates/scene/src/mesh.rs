@@ -19,6 +19,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, one for each position, or empty. (0, 0) is a picture's lower left corner, (1, 1) its upper right one.
     pub uvs: Vec<Vec2>,
+    /// A second set of texture coordinates, one for each position, for the energy map alone; or empty.
+    pub map_uvs: Vec<Vec2>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, its index into [`Mesh::material_slots`]; empty when there is one slot or none.
@@ -35,7 +37,9 @@ pub enum Chart {
     /// A place for each position, which are known not to overlap and are in metres along the surface (the natural map of a
     /// rectangle or a box).
     Natural(Vec<Vec2>),
-    /// The texture coordinates if they do not overlap, else a planar projection.
+    /// The mesh's own texture coordinates, which must not overlap: `map_uvs`, or else `uvs`.
+    Uvs,
+    /// Charts that are grown on the surface.
     #[default]
     Automatic,
 }
@@ -77,6 +81,7 @@ impl Mesh {
                     self.triangles[triangle][corner] = self.positions.len() as u32;
                     self.positions.push(self.positions[vertex]);
                     self.uvs.extend(self.uvs.get(vertex).copied());
+                    self.map_uvs.extend(self.map_uvs.get(vertex).copied());
                     self.normals.push(facet);
                 } else {
                     self.normals[vertex] = facet;
@@ -107,8 +112,13 @@ impl Mesh {
         unequal_counts(&upwards, &downwards)
     }
 
+    /// The texture coordinates that [`Chart::Uvs`] takes.
+    pub fn map_places(&self) -> &[Vec2] {
+        if self.map_uvs.is_empty() { &self.uvs } else { &self.map_uvs }
+    }
+
     /// For each vertex, the first in order of those that have its position.
-    fn welded_vertices(&self) -> Vec<u32> {
+    pub fn welded_vertices(&self) -> Vec<u32> {
         // Adding 0 turns -0 into +0, so that both weld.
         let key = |vertex: u32| (self.positions[vertex as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
         let mut order: Vec<u32> = (0..self.positions.len() as u32).collect();

@@ -85,6 +85,8 @@ pub struct RenderSettings {
     pub footprints: bool,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
+    /// Memory for the sums of energy maps whose size is left open, MiB; the renderer's choice if none.
+    pub map_budget: Option<u32>,
     /// The pixel's reconstruction filter.
     pub filter: PixelFilter,
     /// The wavelength, nm, of the only light that there is; all of it if none. Pictures and maps are then gray: how much of this
@@ -140,6 +142,7 @@ impl Default for RenderSettings {
             guiding: true,
             footprints: false,
             map_size: None,
+            map_budget: None,
             filter: PixelFilter::default(),
             wavelength: None,
             paper: None,

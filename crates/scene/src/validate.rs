@@ -114,7 +114,7 @@ impl Scene {
         if count > 0 {
             warnings.push(Warning::DegenerateTriangles { object: name(), count });
         }
-        let Some(boundary) = self.dielectric_boundary(object) else { return };
+        let Some((_, boundary)) = self.dielectric_boundary(object) else { return };
         let open_edges = boundary.open_edges();
         if open_edges > 0 {
             warnings.push(Warning::OpenDielectric { object: name(), open_edges });
@@ -166,7 +166,9 @@ fn check_settings(settings: &RenderSettings) -> Result<(), Error> {
         let range = SHORTEST_WAVELENGTH as f32..=LONGEST_WAVELENGTH as f32;
         at.number("wavelength", wavelength, range, "from 380 to 780 (nm)")?;
     }
-    settings.map_size.map_or(Ok(()), |map_size| at.number("map_size", map_size, 2..=8192, "from 2 to 8192"))
+    settings.map_size.map_or(Ok(()), |map_size| at.number("map_size", map_size, 2..=8192, "from 2 to 8192"))?;
+    let budget = |budget| at.number("map_budget", budget, 1..=65536, "from 1 to 65536 (MiB)");
+    settings.map_budget.map_or(Ok(()), budget)
 }
 
 fn check_output(output: &OutputSettings) -> Result<(), Error> {

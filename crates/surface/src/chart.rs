@@ -1,10 +1,32 @@
 //! How an object's surface lies on the plane of its energy map.
 
+mod atlas;
+mod cells;
+mod check;
+mod facets;
+mod flattening;
+mod growing;
+mod overlap;
+mod packing;
+mod patches;
+mod uvs;
+
 use diacaustic_scene::{Chart, Mesh, Object};
-use glam::{DVec2, Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec2};
+
+use self::{
+    atlas::{Atlas, Placed},
+    facets::Facets,
+};
+
+pub use self::uvs::check_map_uvs;
 
 /// The layout of one object's energy map. Texel (i, j) stands at the point (i, j) of the map's plane.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// On a surface divided into charts, the bilinear footprints of two charts never share a texel: places of different charts are more
+/// than a texel apart along x or y. Where texels are made 2ⁿ times as wide after the layout, that distance is 2⁻ⁿ of theirs, and charts
+/// may share texels along their borders; where they are made narrower, it holds all the more.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct MapLayout {
     /// Texels along x, at least 2.
     pub width: u32,
@@ -14,30 +36,83 @@ pub struct MapLayout {
     pub layers: u32,
     /// For each triangle of the object's mesh, the places of its corners in [0, width − 1] × [0, height − 1].
     pub corners: Vec<[Vec2; 3]>,
+    /// For each triangle of the object's mesh, the number of its chart.
+    pub charts: Vec<u32>,
+    /// Charts.
+    pub chart_count: u32,
+    /// The last so many charts are cells, in which pieces too small for a chart of their own lie on one another.
+    pub cell_count: u32,
+    /// Width of a texel on the surface in the world, metres; the mean over the surface where charts are not metric.
+    pub metres_per_texel: f32,
 }
 
 impl MapLayout {
-    /// Lays out an object's mesh with `map_size` texels (at least 2) along the longer side.
+    /// Lays out an object's mesh with `map_size` texels (at least 2) along the longer side. A map too small to hold each of the
+    /// surface's charts becomes larger than that.
     pub fn new(object: &Object, map_size: u32) -> Self {
+        let map_size = map_size.max(2);
+        match given_places(&object.mesh) {
+            Some(places) => Self::of_places(object, places, |extent| extent.max_element() / (map_size - 1) as f32),
+            None => charts_within(object, map_size),
+        }
+    }
+
+    /// Lays out an object's mesh with texels that are `metres` wide on the surface in the world.
+    pub fn with_texel_width(object: &Object, metres: f32) -> Self {
+        let metres = metres.max(f32::MIN_POSITIVE);
+        match given_places(&object.mesh) {
+            Some(places) => {
+                let unit = metres_per_unit(object, |vertex| places[vertex as usize]);
+                Self::of_places(object, places, |_| (f64::from(metres) / unit) as f32)
+            }
+            None => {
+                let facets = Facets::new(object);
+                // No more texels along a side than the kernels count.
+                let texel = (f64::from(metres) / facets.metres).max(1e-6);
+                let atlas = Atlas::new(&facets, texel);
+                Self::of_charts(&facets, &atlas, atlas.place(&facets, texel))
+            }
+        }
+    }
+
+    /// A map on which the vertices of a mesh have given places, with a texel for each `spacing` of the places' extent.
+    fn of_places(object: &Object, places: &[Vec2], spacing: impl Fn(Vec2) -> f32) -> Self {
         let mesh = &object.mesh;
-        let places = match &mesh.chart {
-            Chart::Natural(places) => places.clone(),
-            Chart::Automatic if !mesh.uvs.is_empty() && !uvs_overlap(mesh) => mesh.uvs.clone(),
-            Chart::Automatic => planar_projection(mesh, Mat3::from(object.world_from_object.matrix3)),
+        let (low, high) = match mesh.chart {
+            Chart::Uvs => unit_square_or_more(bounds(places)),
+            _ => bounds(places),
         };
-        let (low, high) = bounds(&places);
         let extent = (high - low).max(Vec2::splat(f32::MIN_POSITIVE));
-        let steps = (map_size.max(2) - 1) as f32;
-        let spacing = extent.max_element() / steps;
-        let width = ((extent.x / spacing).round() as u32 + 1).max(2);
-        let height = ((extent.y / spacing).round() as u32 + 1).max(2);
+        let spacing = spacing(extent).max(f32::MIN_POSITIVE);
+        let width = ((extent.x / spacing).round() as u32).saturating_add(1).max(2);
+        let height = ((extent.y / spacing).round() as u32).saturating_add(1).max(2);
         let last = Vec2::new((width - 1) as f32, (height - 1) as f32);
-        let corners = mesh
-            .triangles
-            .iter()
-            .map(|vertices| vertices.map(|v| ((places[v as usize] - low) / extent * last).clamp(Vec2::ZERO, last)))
-            .collect();
-        Self { width, height, layers: if mesh.open_edges() == 0 { 1 } else { 2 }, corners }
+        let place = |v: u32| ((places[v as usize] - low) / extent * last).clamp(Vec2::ZERO, last);
+        let corners = mesh.triangles.iter().map(|vertices| vertices.map(place)).collect();
+        let (charts, chart_count) = islands(mesh);
+        Self {
+            width,
+            height,
+            layers: if mesh.open_edges() == 0 { 1 } else { 2 },
+            corners,
+            charts,
+            chart_count,
+            cell_count: 0,
+            metres_per_texel: metres_per_unit(object, place) as f32,
+        }
+    }
+
+    fn of_charts(facets: &Facets<'_>, atlas: &Atlas, placed: Placed) -> Self {
+        Self {
+            width: placed.size.x,
+            height: placed.size.y,
+            layers: if facets.is_closed { 1 } else { 2 },
+            corners: placed.corners,
+            charts: atlas.chart_of.clone(),
+            chart_count: atlas.frames.len() as u32,
+            cell_count: atlas.cells as u32,
+            metres_per_texel: (placed.texel * facets.metres) as f32,
+        }
     }
 
     /// Texels in all layers.
@@ -46,66 +121,86 @@ impl MapLayout {
     }
 }
 
+/// The places of a mesh's vertices, where the mesh says them.
+fn given_places(mesh: &Mesh) -> Option<&[Vec2]> {
+    match &mesh.chart {
+        Chart::Natural(places) => Some(places),
+        Chart::Uvs => Some(mesh.map_places()),
+        Chart::Automatic => None,
+    }
+}
+
+/// For each triangle the number of the set of triangles with vertices in common that it belongs to, and how many there are.
+fn islands(mesh: &Mesh) -> (Vec<u32>, u32) {
+    fn root(parents: &mut [u32], mut vertex: u32) -> u32 {
+        while parents[vertex as usize] != vertex {
+            parents[vertex as usize] = parents[parents[vertex as usize] as usize];
+            vertex = parents[vertex as usize];
+        }
+        vertex
+    }
+    let mut parents: Vec<u32> = (0..mesh.positions.len() as u32).collect();
+    for [a, b, c] in &mesh.triangles {
+        for (one, other) in [(a, b), (b, c)] {
+            let (one, other) = (root(&mut parents, *one), root(&mut parents, *other));
+            parents[one.max(other) as usize] = one.min(other);
+        }
+    }
+    let mut numbers = vec![u32::MAX; mesh.positions.len()];
+    let mut count = 0;
+    let mut number = |[vertex, ..]: &[u32; 3]| {
+        let number = &mut numbers[root(&mut parents, *vertex) as usize];
+        if *number == u32::MAX {
+            *number = count;
+            count += 1;
+        }
+        *number
+    };
+    let charts = mesh.triangles.iter().map(&mut number).collect();
+    (charts, count)
+}
+
 fn bounds(places: &[Vec2]) -> (Vec2, Vec2) {
     places.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
-/// The vertices seen along the direction in which the mesh, as placed, is thinnest of the three axes.
-///
-/// Surfaces that lie one behind the other share texels; general charts keep them apart.
-fn planar_projection(mesh: &Mesh, linear: Mat3) -> Vec<Vec2> {
-    let placed: Vec<Vec3> = mesh.positions.iter().map(|&p| linear * p).collect();
-    let (low, high) =
-        placed.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-    match (high - low).min_position() {
-        0 => placed.iter().map(|p| Vec2::new(p.y, p.z)).collect(),
-        1 => placed.iter().map(|p| Vec2::new(p.x, p.z)).collect(),
-        _ => placed.iter().map(|p| Vec2::new(p.x, p.y)).collect(),
-    }
+/// The unit square if it holds what lies between two corners, for a lightmap fills it; else the two corners.
+fn unit_square_or_more((low, high): (Vec2, Vec2)) -> (Vec2, Vec2) {
+    let is_within = low.cmpge(Vec2::ZERO).all() && high.cmple(Vec2::ONE).all();
+    if is_within { (Vec2::ZERO, Vec2::ONE) } else { (low, high) }
 }
 
-/// Points along each side of the grid on which [`uvs_overlap`] looks for overlap.
-const OVERLAP_GRID: usize = 512;
-
-/// Whether a mesh's texture coordinates cover some place twice, or fold a triangle with an area to none.
-///
-/// Looks at a grid of points, so that an overlap smaller than about a thousandth of the covered plane is let pass.
-pub fn uvs_overlap(mesh: &Mesh) -> bool {
-    let (low, high) = bounds(&mesh.uvs);
-    let extent = high - low;
-    let covers_plane = extent.min_element() > 0.0;
-    if !covers_plane {
-        return true;
+/// The width in the world of a unit of a plane, metres, by the areas of all triangles.
+fn metres_per_unit(object: &Object, place: impl Fn(u32) -> Vec2) -> f64 {
+    let linear = Mat3::from(object.world_from_object.matrix3);
+    let (mut surface, mut plane) = (0.0, 0.0);
+    for (number, vertices) in object.mesh.triangles.iter().enumerate() {
+        let [a, b, c] = object.mesh.corners(number).map(|p| (linear * p).as_dvec3());
+        surface += (b - a).cross(c - a).length();
+        let [a, b, c] = vertices.map(|v| place(v).as_dvec2());
+        plane += (b - a).perp_dot(c - a).abs();
     }
-    let mut covers = vec![0u8; OVERLAP_GRID * OVERLAP_GRID];
-    for (number, vertices) in mesh.triangles.iter().enumerate() {
-        let corners = vertices.map(|v| ((mesh.uvs[v as usize] - low) / extent).as_dvec2() * OVERLAP_GRID as f64);
-        let folded = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs() < 1e-9;
-        if folded && mesh.double_area_normal(number) != Vec3::ZERO {
-            return true;
-        }
-        cover(&mut covers, corners);
-    }
-    let covered = covers.iter().filter(|&&count| count > 0).count();
-    let twice = covers.iter().filter(|&&count| count > 1).count();
-    twice * 1000 > covered
+    (surface / plane.max(f64::MIN_POSITIVE)).sqrt()
 }
 
-/// Counts a triangle at the grid points inside it.
-fn cover(covers: &mut [u8], [a, b, c]: [DVec2; 3]) {
-    // An irrational-looking offset keeps points off edges at round coordinates.
-    let offset = DVec2::new(0.381_966, 0.618_034);
-    let low = (a.min(b).min(c) - offset).ceil().max(DVec2::ZERO);
-    let high = (a.max(b).max(c) - offset).floor().min(DVec2::splat(OVERLAP_GRID as f64 - 1.0));
-    let orientation = (b - a).perp_dot(c - a).signum();
-    for y in low.y as usize..(high.y + 1.0).max(0.0) as usize {
-        for x in low.x as usize..(high.x + 1.0).max(0.0) as usize {
-            let p = DVec2::new(x as f64, y as f64) + offset;
-            let inside = [(a, b), (b, c), (c, a)].iter().all(|(s, e)| (*e - *s).perp_dot(p - *s) * orientation > 0.0);
-            if inside {
-                let count = &mut covers[y * OVERLAP_GRID + x];
-                *count = count.saturating_add(1);
-            }
+/// Share of a map's texels that charts fill, at a guess.
+const FILL: f64 = 0.5;
+/// How much wider than guessed texels may become before charts are made anew for the wider ones.
+const RESCALE: f64 = 1.5;
+/// How often charts are made anew.
+const MOST_RESCALES: usize = 8;
+
+/// Charts of a mesh in a map of at most `map_size` texels along a side.
+fn charts_within(object: &Object, map_size: u32) -> MapLayout {
+    let facets = Facets::new(object);
+    let mut texel = (facets.total_area() / (FILL * f64::from(map_size).powi(2))).sqrt().max(1e-9);
+    for _ in 0..MOST_RESCALES {
+        let atlas = Atlas::new(&facets, texel);
+        if let Some(placed) = atlas.fit(&facets, map_size, texel, RESCALE * texel) {
+            return MapLayout::of_charts(&facets, &atlas, placed);
         }
+        texel *= RESCALE;
     }
+    let atlas = Atlas::new(&facets, texel);
+    MapLayout::of_charts(&facets, &atlas, atlas.place(&facets, texel))
 }

@@ -1,30 +1,123 @@
 //! Areas of texels.
 
+use std::collections::HashMap;
+
 use glam::{DVec2, DVec3, Vec3};
 
-use crate::{MapLayout, WorldTriangle};
+use crate::{MapLayout, MapSquare, MapTile, MapTiles, WorldTriangle, tile::FINEST_LEVEL};
 
-/// The area of each texel of one layer, m²: the integral of its bilinear weight over the object's surface in the world, so
-/// that the areas sum to the surface's area.
+/// The area of each texel, m²: the integral of its bilinear weight over the object's surface in the world that lies on its tile, so
+/// that the areas of each layer sum to the surface's area.
 ///
 /// `triangles` are the object's, in any order; those without an area may be missing.
-pub fn texel_areas(layout: &MapLayout, triangles: &[WorldTriangle]) -> Vec<f64> {
-    let mut areas = Areas {
-        width: layout.width as usize,
-        last_cell: DVec2::new(f64::from(layout.width - 2), f64::from(layout.height - 2)),
-        sums: vec![0.0; layout.width as usize * layout.height as usize],
-    };
-    for triangle in triangles {
-        let places = triangle.arrange(layout.corners[triangle.triangle as usize]).map(|p| p.as_dvec2());
-        let area = 0.5 * world_double_area(triangle.corners);
-        let chart_area = 0.5 * (places[1] - places[0]).perp_dot(places[2] - places[0]).abs();
-        if chart_area > 1e-9 {
-            areas.add_triangle(places, area / chart_area);
-        } else {
-            areas.add_folded(places, area);
+pub fn texel_areas(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTriangle]) -> Vec<f64> {
+    let mut areas = vec![0.0; tiles.texel_count() as usize];
+    for layer in 0..layout.layers {
+        if layer > 0 && copy_of_first_layer(tiles, layer, &mut areas) {
+            continue;
+        }
+        let index = tiles.tiles.iter().filter(|tile| tile.square.layer == layer).map(|tile| (tile.square, *tile));
+        let index: HashMap<MapSquare, MapTile> = index.collect();
+        for triangle in triangles {
+            let places = triangle.arrange(layout.corners[triangle.triangle as usize]).map(|p| p.as_dvec2());
+            let area = 0.5 * world_double_area(triangle.corners);
+            let chart_area = 0.5 * (places[1] - places[0]).perp_dot(places[2] - places[0]).abs();
+            let spread = if chart_area > 1e-9 * tiles.cell_area_bound() {
+                Spread::Over(places, area / chart_area)
+            } else {
+                Spread::Folded(folded_points(places, area))
+            };
+            for (y, x) in (0..tiles.roots[1]).flat_map(|y| (0..tiles.roots[0]).map(move |x| (y, x))) {
+                add(tiles, &index, MapSquare { layer, level: 0, x, y }, &spread, &mut areas);
+            }
         }
     }
-    areas.sums
+    areas
+}
+
+/// Copies the areas of a layer that has the same tiles as the first; returns whether it has.
+fn copy_of_first_layer(tiles: &MapTiles, layer: u32, areas: &mut [f64]) -> bool {
+    let of_layer = |wanted: u32| tiles.tiles.iter().filter(move |tile| tile.square.layer == wanted);
+    let alike = |(a, b): (&MapTile, &MapTile)| MapSquare { layer, ..a.square } == b.square && a.cells == b.cells;
+    let same = of_layer(0).count() == of_layer(layer).count() && of_layer(0).zip(of_layer(layer)).all(alike);
+    for (from, to) in of_layer(0).zip(of_layer(layer)).filter(|_| same) {
+        let texels = from.first_texel as usize..(from.first_texel + from.texel_count()) as usize;
+        areas.copy_within(texels, to.first_texel as usize);
+    }
+    same
+}
+
+/// How a triangle's area lies on the plane.
+enum Spread {
+    /// Evenly over a triangle of the plane, so many m² on each unit.
+    Over([DVec2; 3], f64),
+    /// As if in points, each with its m², for the chart folds the triangle to a line or a point.
+    Folded(Vec<(DVec2, f64)>),
+}
+
+/// Adds what lies on a square to the tiles in it.
+fn add(tiles: &MapTiles, index: &HashMap<MapSquare, MapTile>, square: MapSquare, spread: &Spread, areas: &mut [f64]) {
+    let size = tiles.square_size(square.level);
+    let origin = DVec2::new(square.x.into(), square.y.into()) * size;
+    let is_met = match spread {
+        Spread::Over(places, _) => meets(places, origin, origin + size),
+        Spread::Folded(points) => points.iter().any(|(place, _)| tiles.holds(square, *place)),
+    };
+    if !is_met {
+        return;
+    }
+    let Some(tile) = index.get(&square) else {
+        if square.level < FINEST_LEVEL {
+            square.children().into_iter().for_each(|child| add(tiles, index, child, spread, areas));
+        }
+        return;
+    };
+    let cells = DVec2::new(tile.cells[0].into(), tile.cells[1].into());
+    let scale = cells / size;
+    let mut grid = Grid {
+        width: tile.cells[0] as usize + 1,
+        last_cell: cells - 1.0,
+        sums: &mut areas[tile.first_texel as usize..(tile.first_texel + tile.texel_count()) as usize],
+    };
+    match spread {
+        Spread::Over(places, density) => {
+            grid.add_triangle(places.map(|place| (place - origin) * scale), density / (scale.x * scale.y));
+        }
+        Spread::Folded(points) => {
+            let own = points.iter().filter(|(place, _)| tiles.holds(square, *place));
+            own.for_each(|(place, area)| grid.add_point((*place - origin) * scale, *area));
+        }
+    }
+}
+
+/// Whether a triangle may meet a rectangle: it does not lie outside one of the rectangle's sides, nor the rectangle outside one of its.
+fn meets(places: &[DVec2; 3], low: DVec2, high: DVec2) -> bool {
+    let [a, b, c] = places;
+    let (least, most) = (a.min(*b).min(*c), a.max(*b).max(*c));
+    if least.cmpgt(high).any() || most.cmplt(low).any() {
+        return false;
+    }
+    let orientation = (*b - *a).perp_dot(*c - *a).signum();
+    [(a, b), (b, c), (c, a)].iter().all(|(start, end)| {
+        let edge = (**end - **start) * orientation;
+        // The rectangle's corner farthest inside this edge decides.
+        let farthest = DVec2::new(if edge.y > 0.0 { low.x } else { high.x }, if edge.x > 0.0 { high.y } else { low.y });
+        edge.perp_dot(farthest - **start) >= 0.0
+    })
+}
+
+impl MapTiles {
+    /// Whether a place of the plane lies on a square, whose upper border belongs to the next.
+    fn holds(&self, square: MapSquare, place: DVec2) -> bool {
+        let count = glam::UVec2::from(self.roots) << square.level;
+        let own = (place / self.square_size(square.level)).floor().clamp(DVec2::ZERO, count.as_dvec2() - 1.0);
+        own == DVec2::new(square.x.into(), square.y.into())
+    }
+
+    /// The area of the layout's texel on the plane, at most 1: a measure for what counts as folded.
+    fn cell_area_bound(&self) -> f64 {
+        self.tiles.iter().map(|tile| self.cell_size(tile).element_product()).fold(1.0, f64::min)
+    }
 }
 
 fn world_double_area(corners: [Vec3; 3]) -> f64 {
@@ -32,15 +125,34 @@ fn world_double_area(corners: [Vec3; 3]) -> f64 {
     (b - a).cross(c - a).length()
 }
 
-struct Areas {
+/// Points in place of a triangle that is folded, with their shares of its area: it is cut into congruent pieces, upright and inverted.
+fn folded_points([a, b, c]: [DVec2; 3], area: f64) -> Vec<(DVec2, f64)> {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    let pieces = (4.0 * longest).ceil().clamp(1.0, 256.0) as usize;
+    let share = area / (pieces * pieces) as f64;
+    let center = |i: usize, j: usize, within: f64| {
+        a + ((b - a) * (i as f64 + within) + (c - a) * (j as f64 + within)) / pieces as f64
+    };
+    let mut points = Vec::with_capacity(pieces * pieces);
+    for (i, j) in (0..pieces).flat_map(|i| (0..pieces - i).map(move |j| (i, j))) {
+        points.push((center(i, j, 1.0 / 3.0), share));
+        if i + j + 1 < pieces {
+            points.push((center(i, j, 2.0 / 3.0), share));
+        }
+    }
+    points
+}
+
+/// The areas of a tile's texels.
+struct Grid<'a> {
     width: usize,
     /// The last cell's lower corner.
     last_cell: DVec2,
-    sums: Vec<f64>,
+    sums: &'a mut [f64],
 }
 
-impl Areas {
-    /// Adds a triangle of the plane, each unit of which stands for `density` m².
+impl Grid<'_> {
+    /// Adds a triangle of the plane, each unit of which stands for `density` m², as far as it lies on the grid.
     fn add_triangle(&mut self, places: [DVec2; 3], density: f64) {
         let low = places[0].min(places[1]).min(places[2]).floor().clamp(DVec2::ZERO, self.last_cell);
         let high = places[0].max(places[1]).max(places[2]).ceil();
@@ -58,26 +170,6 @@ impl Areas {
                     let right_of = clip(&strip, |p| p.x - x as f64);
                     let cell = clip(&right_of, |p| (x + 1) as f64 - p.x);
                     self.add_moments(x, y, density, moments(&cell, corner));
-                }
-            }
-        }
-    }
-
-    /// Adds `area` m² of a triangle that the chart folds to a line or a point, piece by piece.
-    fn add_folded(&mut self, places: [DVec2; 3], area: f64) {
-        let [a, b, c] = places;
-        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-        let pieces = (4.0 * longest).ceil().clamp(1.0, 256.0) as usize;
-        let share = area / (pieces * pieces) as f64;
-        // The triangle is cut into pieces × pieces congruent ones, upright and inverted, which differ in `within`.
-        let piece_center = |[i, j]: [usize; 2], within: f64| {
-            a + ((b - a) * (i as f64 + within) + (c - a) * (j as f64 + within)) / pieces as f64
-        };
-        for i in 0..pieces {
-            for j in 0..pieces - i {
-                self.add_point(piece_center([i, j], 1.0 / 3.0), share);
-                if i + j + 1 < pieces {
-                    self.add_point(piece_center([i, j], 2.0 / 3.0), share);
                 }
             }
         }
@@ -161,13 +253,18 @@ mod tests {
     #[test]
     fn a_unit_square_has_whole_halved_and_quartered_texels() {
         let p = [Vec2::new(0.0, 0.0), Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0), Vec2::new(0.0, 3.0)];
-        let layout =
-            MapLayout { width: 5, height: 4, layers: 1, corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]] };
+        let layout = MapLayout {
+            width: 5,
+            height: 4,
+            layers: 1,
+            corners: vec![[p[0], p[1], p[2]], [p[0], p[2], p[3]]],
+            ..Default::default()
+        };
         let world = layout.corners.iter().enumerate().map(|(i, places)| WorldTriangle {
             triangle: i as u32,
             ..triangle(places.map(|place| Vec3::new(place.x, 0.0, place.y)))
         });
-        let areas = texel_areas(&layout, &world.collect::<Vec<_>>());
+        let areas = texel_areas(&layout, &MapTiles::dense(&layout), &world.collect::<Vec<_>>());
         for y in 0..4 {
             for x in 0..5 {
                 let share = |at: usize, last: usize| if at == 0 || at == last { 0.5 } else { 1.0 };
@@ -180,8 +277,8 @@ mod tests {
     #[test]
     fn areas_are_the_integral_of_the_weights() {
         let places = [Vec2::new(0.3, 0.2), Vec2::new(5.7, 1.1), Vec2::new(2.2, 6.4)];
-        let layout = MapLayout { width: 7, height: 8, layers: 1, corners: vec![places] };
-        let areas = texel_areas(&layout, &[triangle([Vec3::ZERO, Vec3::X, Vec3::Y])]);
+        let layout = MapLayout { width: 7, height: 8, layers: 1, corners: vec![places], ..Default::default() };
+        let areas = texel_areas(&layout, &MapTiles::dense(&layout), &[triangle([Vec3::ZERO, Vec3::X, Vec3::Y])]);
         let steps = 1500;
         let mut expected = vec![0.0; areas.len()];
         for (i, j) in (0..steps).flat_map(|i| (0..steps - i).map(move |j| (i, j))) {
@@ -214,12 +311,61 @@ mod tests {
             if fold {
                 places[2] = places[0].lerp(places[1], 0.3);
             }
-            let layout = MapLayout { width: 31, height: 21, layers: 1, corners: vec![places] };
+            let layout = MapLayout { width: 31, height: 21, layers: 1, corners: vec![places], ..Default::default() };
             let world = triangle(corners.map(Vec3::from));
-            let areas = texel_areas(&layout, &[world]);
+            let areas = texel_areas(&layout, &MapTiles::dense(&layout), &[world]);
             let surface = 0.5 * world_double_area(world.corners);
             prop_assert!(areas.iter().all(|&area| area >= -1e-9 * surface));
             prop_assert!((areas.iter().sum::<f64>() - surface).abs() <= 1e-6 * surface + 1e-12);
+        }
+
+        /// A quadtree's leaf of 4 cells holds the sum of the dense map's areas in the same place, whatever tiles lie around it.
+        #[test]
+        fn tiles_of_any_size_share_the_surface(
+            places in prop::array::uniform3((0.0f32..32.0, 0.0f32..16.0)),
+            splits in prop::collection::vec(prop::bool::ANY, 64),
+            fold in prop::bool::ANY,
+        ) {
+            let mut places = places.map(|(x, y)| Vec2::new(x, y));
+            if fold {
+                places[2] = places[0].lerp(places[1], 0.3);
+            }
+            let layout = MapLayout { width: 33, height: 17, layers: 2, corners: vec![places], ..Default::default() };
+            let roots = MapTiles::roots(&layout);
+            prop_assert_eq!(roots, [2, 1]);
+            let mut open: Vec<MapSquare> =
+                (0..2).flat_map(|layer| (0..2).map(move |x| MapSquare { layer, level: 0, x, y: 0 })).collect();
+            let (mut leaves, mut splits) = (Vec::new(), splits.into_iter());
+            while let Some(square) = open.pop() {
+                if square.level < 3 && splits.next() == Some(true) {
+                    open.extend(square.children());
+                } else {
+                    leaves.push((square, [1 << (square.x % 4), 3]));
+                }
+            }
+            let tiles = MapTiles::new(&layout, roots, leaves.into_iter());
+            let world = triangle([Vec3::ZERO, Vec3::X, Vec3::Y]);
+            let areas = texel_areas(&layout, &tiles, &[world]);
+            let fine = MapLayout { width: 513, height: 257, ..layout.clone() };
+            let fine = MapLayout { corners: vec![places.map(|place| place * 16.0)], ..fine };
+            // Cells of a fine map, each wholly on one tile: their corners' weights of 1 in all sum to the area on the cell.
+            let cells = MapTiles::new(&fine, roots, (0..4).flat_map(|i| (0..64u32).map(move |place| {
+                (MapSquare { layer: i / 2, level: 3, x: 8 * (i % 2) + place % 8, y: place / 8 }, [1, 1])
+            })));
+            let fine_areas = texel_areas(&fine, &cells, &[world]);
+            for tile in &tiles.tiles {
+                let own: f64 = areas[tile.first_texel as usize..][..tile.texel_count() as usize].iter().sum();
+                let shift = 3 - tile.square.level;
+                let inside = cells.tiles.iter().filter(|cell| {
+                    (cell.square.layer, cell.square.x >> shift, cell.square.y >> shift)
+                        == (tile.square.layer, tile.square.x, tile.square.y)
+                });
+                let expected: f64 =
+                    inside.map(|cell| fine_areas[cell.first_texel as usize..][..4].iter().sum::<f64>()).sum();
+                // Points that stand for a folded triangle are few, and lie elsewhere in the fine map.
+                prop_assert!(fold || (own - expected).abs() <= 1e-6, "{tile:?}: {own} against {expected}");
+            }
+            prop_assert!((areas.iter().sum::<f64>() - 1.0).abs() < 1e-6);
         }
     }
 }

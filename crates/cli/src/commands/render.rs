@@ -1,6 +1,7 @@
 //! `diacaustic render`: from the scene to a picture.
 
 mod arguments;
+mod chart_borders;
 mod outputs;
 mod pictures;
 mod report;
@@ -16,6 +17,7 @@ use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, wri
 
 pub use self::arguments::RenderArguments;
 use self::{
+    chart_borders::chart_borders,
     outputs::Outputs,
     pictures::{NO_LAYERS, can_hold_layers, write_pictures},
     report::Report,
@@ -93,8 +95,10 @@ fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<
     let mut count = 0;
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
-        let texels: Vec<_> = (0..map.sums.len()).map(|texel| map.irradiance(texel).as_vec3().to_array()).collect();
-        folder.write(&object.name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
+        let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
+        let borders = session.renderer.map_layout(index)?.map_or_else(Vec::new, chart_borders);
+        let irradiance = Irradiance { width: map.width, height: map.height, texels: &texels, chart_borders: &borders };
+        folder.write(&object.name, &irradiance)?;
         count += 1;
     }
     Ok(count)
@@ -113,7 +117,8 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
     Ok(write_statistics(path, &report.statistics())?)
 }
 
-fn display(output: &OutputSettings) -> Display {
+/// How the scene's pictures are exposed.
+pub(crate) fn display(output: &OutputSettings) -> Display {
     let tone = match output.tone {
         ToneCurve::Plain => Tone::Plain,
         ToneCurve::Filmic => Tone::Filmic,

@@ -174,7 +174,7 @@ impl Builder {
         used: &[u32],
         place: &str,
     ) -> Result<()> {
-        let Mesh { positions, normals, uvs, .. } = &mut self.mesh;
+        let Mesh { positions, normals, uvs, map_uvs, .. } = &mut self.mesh;
         let before = positions.len();
         positions.reserve_exact(used.len());
         if corners.normals.is_some() || !normals.is_empty() {
@@ -182,6 +182,9 @@ impl Builder {
         }
         if corners.uvs.is_some() || corners.has_pictures || !uvs.is_empty() {
             uvs.resize(before + used.len(), UPPER_LEFT);
+        }
+        if corners.map_uvs.is_some() || !map_uvs.is_empty() {
+            map_uvs.resize(before + used.len(), UPPER_LEFT);
         }
         for (number, &vertex) in (before..).zip(used) {
             let vertex = vertex as usize;
@@ -195,11 +198,12 @@ impl Builder {
             if let Some(stored) = normals.get_mut(number).filter(|_| normal.is_finite()) {
                 *stored = normal;
             }
-            if let Some(given) = &corners.uvs {
+            for (given, stored) in [(&corners.uvs, &mut *uvs), (&corners.map_uvs, &mut *map_uvs)] {
+                let Some(given) = given else { continue };
                 let [u, v] = given.numbers(vertex);
                 // (0, 0) is a picture's upper left corner in glTF, and its lower left one here.
-                uvs[number] = Vec2::new(u, 1.0 - v);
-                if !uvs[number].is_finite() {
+                stored[number] = Vec2::new(u, 1.0 - v);
+                if !stored[number].is_finite() {
                     return Err(not_finite("texture coordinates", Vec2::new(u, v), vertex, place));
                 }
             }

@@ -18,6 +18,8 @@ pub(super) struct Corners<'a> {
     pub(super) positions: Accessor<'a>,
     pub(super) normals: Option<Accessor<'a>>,
     pub(super) uvs: Option<Accessor<'a>>,
+    /// The second set of texture coordinates, which may serve as an energy map.
+    pub(super) map_uvs: Option<Accessor<'a>>,
     /// Whether pictures lie on the surface, which then must have texture coordinates, if only of one point.
     pub(super) has_pictures: bool,
     /// Vertices of each triangle, all of which are in range.
@@ -75,6 +77,7 @@ impl<'a> Corners<'a> {
         Ok(Some(Self {
             normals: find(Semantic::Normals, Type::Vec3, vertices)?,
             uvs: find(Semantic::TexCoords(uv_set.unwrap_or(0)), Type::Vec2, vertices)?,
+            map_uvs: find(Semantic::TexCoords(1), Type::Vec2, vertices)?,
             has_pictures: uv_set.is_some(),
             positions,
             triangles: triangles(mode, count, index, place)?,

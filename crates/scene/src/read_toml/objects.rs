@@ -10,10 +10,11 @@ use glam::{Affine3A, DMat3, Vec3};
 
 use super::table::{Entry, Table};
 use crate::{
-    Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj, primitives::are_perpendicular,
+    Chart, Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj,
+    primitives::are_perpendicular,
 };
 
-const OBJECT_KEYS: [&str; 11] = [
+const OBJECT_KEYS: [&str; 12] = [
     "name",
     "mesh",
     "sphere",
@@ -25,6 +26,7 @@ const OBJECT_KEYS: [&str; 11] = [
     "rotate",
     "scale",
     "map_size",
+    "map_uvs",
 ];
 const SHAPE_KEYS: [&str; 4] = ["mesh", "sphere", "rectangle", "box"];
 
@@ -112,13 +114,15 @@ impl<'a> ObjectReader<'a> {
         }
         let shape = self.read_shape(&shape)?;
         let materials = self.read_materials(&table, &shape)?;
-        Ok(vec![Object {
+        let mut objects = vec![Object {
             name: name.map_or_else(|| self.unused_name(&shape.default_name), str::to_owned),
             mesh: shape.mesh,
             world_from_object: read_placement(&table)?,
             materials,
             map_size: read_map_size(&table)?,
-        }])
+        }];
+        self.set_map_uvs(&table, &mut objects)?;
+        Ok(objects)
     }
 
     /// The name itself, or with the first number from 2 that makes it differ from every other object's.
@@ -180,6 +184,7 @@ impl<'a> ObjectReader<'a> {
             });
         }
         self.set_map_size(&mut objects, map_size);
+        self.set_map_uvs(table, &mut objects)?;
         Ok(objects)
     }
 
@@ -190,6 +195,28 @@ impl<'a> ObjectReader<'a> {
         for object in objects.iter_mut().filter(|object| !has_receiver || is_receiver(object)) {
             object.map_size = map_size;
         }
+    }
+
+    /// Lets the objects that have an energy map take their texture coordinates for it, if the table says so.
+    fn set_map_uvs(&self, table: &Table<'_>, objects: &mut [Object]) -> Result<(), Error> {
+        let Some(entry) = table.get("map_uvs") else { return Ok(()) };
+        if !entry.boolean()? {
+            return Ok(());
+        }
+        let is_receiver = |object: &Object| object.materials.iter().any(|index| self.materials[*index].is_receiver());
+        let mut found = false;
+        for object in objects.iter_mut().filter(|object| is_receiver(object)) {
+            found = true;
+            if object.mesh.map_places().is_empty() {
+                let problem = format!("is true, but the mesh of object {:?} has no texture coordinates", object.name);
+                return Err(entry.error(problem));
+            }
+            Arc::make_mut(&mut object.mesh).chart = Chart::Uvs;
+        }
+        if !found {
+            return Err(entry.error("is true, but only objects with a diffuse share have an energy map; leave it out"));
+        }
+        Ok(())
     }
 
     fn gltf_file(&mut self, path: &Path, entry: &Entry<'_>) -> Result<Arc<GltfFile>, Error> {

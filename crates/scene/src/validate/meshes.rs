@@ -21,12 +21,17 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
     if let Some(position) = mesh.positions.iter().find(|position| !is_in_reach(**position)) {
         return Err(format!("has the position {:?}; {REACH}", position.to_array()));
     }
-    for (what, count) in [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len())] {
+    let counts = [
+        ("normals", mesh.normals.len()),
+        ("texture coordinates", mesh.uvs.len()),
+        ("texture coordinates for its map", mesh.map_uvs.len()),
+    ];
+    for (what, count) in counts {
         ensure(count == 0 || count == vertices, &|| format!("has {count} {what}; it must have {vertices} or none"))?;
     }
     let is_unit = |normal: &Vec3| (normal.length_squared() - 1.0).abs() <= UNIT_TOLERANCE;
     ensure(mesh.normals.iter().all(is_unit), &|| "has a normal whose length is not 1".to_owned())?;
-    let has_finite_uvs = mesh.uvs.iter().all(|uv| uv.is_finite());
+    let has_finite_uvs = mesh.uvs.iter().chain(&mesh.map_uvs).all(|uv| uv.is_finite());
     ensure(has_finite_uvs, &|| "has a texture coordinate that is not finite".to_owned())?;
     if let Chart::Natural(places) = &mesh.chart {
         let are_sound = places.len() == vertices && places.iter().all(|place| place.is_finite());
@@ -34,6 +39,8 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
             format!("has a natural chart of {} places; it must have {vertices}, all of them finite", places.len())
         })?;
     }
+    let has_map = mesh.chart != Chart::Uvs || !mesh.map_places().is_empty();
+    ensure(has_map, &|| "has no texture coordinates, which are to be its map; leave out map_uvs".to_owned())?;
     check_triangle_slots(mesh)?;
     ensure(mesh.degenerate_triangles() < triangles, &|| format!("has {triangles} triangles, all of zero area"))
 }

@@ -44,6 +44,9 @@ impl Scene {
         at.require(settings.map_size.is_none(), "map_size", || {
             "is set, but in the profile \"paper\" the size of maps is map_size in [paper]; set that instead".to_owned()
         })?;
+        at.require(settings.map_budget.is_none(), "map_budget", || {
+            "is set, but in the profile \"paper\" the size of maps is map_size in [paper]; leave it out".to_owned()
+        })?;
         let is_square = settings.photons.isqrt().pow(2) == settings.photons;
         at.require(profile.sampling != PaperSampling::Grid || is_square, "photons", || {
             let root = settings.photons.isqrt();

@@ -41,6 +41,8 @@ impl Report<'_> {
             triangles: self.built.triangles as u64,
             bvh_nodes: self.built.bvh_nodes as u64,
             device_bytes: self.built.device_bytes,
+            map_bytes: self.built.map_bytes,
+            map_budget: self.built.map_budget,
         }
     }
 
@@ -90,7 +92,17 @@ impl Report<'_> {
 
     fn map(&self, map: &MapSize) -> output::Map {
         let object = self.scene.objects[map.object].name.clone();
-        output::Map { object, width: map.width, height: map.height, layers: map.layers }
+        output::Map {
+            object,
+            width: map.width,
+            height: map.height,
+            layers: map.layers,
+            tiles: map.tiles,
+            texels: map.texels,
+            texel_width: map.texel_width,
+            wanted_texel_width: map.wanted_texel_width,
+            finest_texel_width: map.finest_texel_width,
+        }
     }
 }
 

@@ -1,0 +1,414 @@
+//! Charts: what they promise, on many shapes.
+
+mod shapes;
+
+use std::collections::BTreeMap;
+
+use diacaustic_scene::{Chart, Mesh, Object};
+use diacaustic_surface::{MapLayout, MapTiles, WorldTriangle, texel_areas};
+use glam::{DVec2, DVec3, Vec2, Vec3};
+use proptest::prelude::*;
+
+/// The area of each texel of one layer, m².
+fn layer_areas(layout: &MapLayout, triangles: &[WorldTriangle]) -> Vec<f64> {
+    let mut areas = texel_areas(layout, &MapTiles::dense(layout), triangles);
+    areas.truncate(areas.len() / layout.layers as usize);
+    areas
+}
+
+fn world_triangles(object: &Object) -> Vec<WorldTriangle> {
+    let place = |p: Vec3| object.world_from_object.transform_point3(p);
+    let triangle = |number: usize| WorldTriangle {
+        corners: object.mesh.corners(number).map(place),
+        normals: None,
+        uvs: None,
+        object: 0,
+        triangle: number as u32,
+        material: 0,
+        exchanged: false,
+    };
+    let all = (0..object.mesh.triangles.len()).map(triangle);
+    all.filter(|triangle| triangle.double_area_normal() != Vec3::ZERO).collect()
+}
+
+fn area(triangle: &WorldTriangle) -> f64 {
+    let [a, b, c] = triangle.corners.map(Vec3::as_dvec3);
+    0.5 * (b - a).cross(c - a).length()
+}
+
+fn places(layout: &MapLayout, triangle: usize) -> [DVec2; 3] {
+    layout.corners[triangle].map(Vec2::as_dvec2)
+}
+
+/// Whether convex polygons meet, more than `depth` deep.
+fn meet(first: &[DVec2], second: &[DVec2], depth: f64) -> bool {
+    let extent = |polygon: &[DVec2], axis: DVec2| {
+        polygon.iter().map(|p| p.dot(axis)).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+    };
+    [first, second].iter().all(|polygon| {
+        (0..polygon.len()).all(|k| {
+            let axis = (polygon[(k + 1) % polygon.len()] - polygon[k]).perp().normalize_or_zero();
+            let (low, high) = extent(first, axis);
+            let (other_low, other_high) = extent(second, axis);
+            axis == DVec2::ZERO || high.min(other_high) - low.max(other_low) > depth
+        })
+    })
+}
+
+/// The cells of the plane that a triangle lies in.
+fn cells(layout: &MapLayout, corners: [DVec2; 3]) -> impl Iterator<Item = (u32, u32)> {
+    let last = DVec2::new(f64::from(layout.width - 2), f64::from(layout.height - 2));
+    let low = corners[0].min(corners[1]).min(corners[2]).floor().clamp(DVec2::ZERO, last);
+    let high = corners[0].max(corners[1]).max(corners[2]).floor().clamp(DVec2::ZERO, last);
+    let all = (low.y as u32..=high.y as u32).flat_map(move |y| (low.x as u32..=high.x as u32).map(move |x| (x, y)));
+    all.filter(move |&(x, y)| {
+        let p = DVec2::new(f64::from(x), f64::from(y));
+        meet(&corners, &[p, p + DVec2::X, p + DVec2::ONE, p + DVec2::Y], 0.0) || corners[0].floor() == p
+    })
+}
+
+/// Checks that places are inside, texels belong to one chart each, areas sum to the surface and charts keep their measure.
+fn check_layout(object: &Object, layout: &MapLayout) {
+    let triangles = world_triangles(object);
+    let last = Vec2::new((layout.width - 1) as f32, (layout.height - 1) as f32);
+    assert_eq!((layout.corners.len(), layout.charts.len()), (object.mesh.triangles.len(), object.mesh.triangles.len()));
+    for place in layout.corners.iter().flatten() {
+        assert!(place.cmpge(Vec2::ZERO).all() && place.cmple(last).all(), "{place} is outside {last}");
+    }
+    let mut owners = vec![u32::MAX; layout.width as usize * layout.height as usize];
+    for triangle in &triangles {
+        let chart = layout.charts[triangle.triangle as usize];
+        assert!(chart < layout.chart_count);
+        for (x, y) in cells(layout, places(layout, triangle.triangle as usize)) {
+            for texel in [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)] {
+                let owner = &mut owners[texel.1 as usize * layout.width as usize + texel.0 as usize];
+                assert!([u32::MAX, chart].contains(owner), "texel {texel:?} is of the charts {chart} and {owner}");
+                *owner = chart;
+            }
+        }
+    }
+    let surface: f64 = triangles.iter().map(area).sum();
+    let texels: f64 = layer_areas(layout, &triangles).iter().sum();
+    assert!((texels - surface).abs() <= 1e-9 * surface, "{texels} m² of {surface} m²");
+}
+
+/// Checks that no two triangles overlap, but for those in cells, and that a texel's width is the same everywhere.
+fn check_plane(object: &Object, layout: &MapLayout) {
+    let mut near: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
+    let cell_from = layout.chart_count - layout.cell_count;
+    let (mut stretched, mut whole) = (0.0, 0.0);
+    for triangle in world_triangles(object) {
+        let number = triangle.triangle as usize;
+        whole += area(&triangle);
+        if layout.charts[number] >= cell_from {
+            continue;
+        }
+        let [a, b, c] = places(layout, number);
+        let flat = 0.5 * (b - a).perp_dot(c - a).abs() * f64::from(layout.metres_per_texel).powi(2);
+        stretched += area(&triangle);
+        // Along the axis a triangle only becomes smaller, by the cone's cosine of 0.34 at most.
+        let rounding = 1e-3 * whole;
+        assert!(flat <= area(&triangle) * 1.001 + rounding && flat >= 0.33 * area(&triangle) - rounding, "{number}");
+        for cell in cells(layout, [a, b, c]) {
+            near.entry(cell).or_default().push(number);
+        }
+    }
+    assert!(stretched > 0.98 * whole, "more than 2 % of the surface is in cells");
+    for numbers in near.values() {
+        for (k, &one) in numbers.iter().enumerate() {
+            for &other in &numbers[k + 1..] {
+                let overlap = meet(&places(layout, one), &places(layout, other), 2e-3);
+                assert!(!overlap, "triangles {one} and {other} overlap");
+            }
+        }
+    }
+}
+
+/// Units of a photon's flux.
+const UNITS: i64 = 1 << 24;
+
+/// A texel's sum of flux and of the squares of its shares.
+#[derive(Clone, Copy, Default)]
+struct Texel {
+    sum: i64,
+    squares: f64,
+}
+
+/// Lays photons on points spread evenly over the surface, as the kernel does.
+fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> Vec<Texel> {
+    let ends: Vec<f64> = triangles
+        .iter()
+        .scan(0.0, |sum, triangle| {
+            *sum += area(triangle);
+            Some(*sum)
+        })
+        .collect();
+    let mut texels = vec![Texel::default(); layout.width as usize * layout.height as usize];
+    for photon in 0..photons {
+        let [pick, u, v] = [0, 1, 2].map(|k| shapes::hashed(3 * photon + k));
+        let number = ends.partition_point(|end| *end <= pick * ends[ends.len() - 1]).min(triangles.len() - 1);
+        let c = layout.corners[triangles[number].triangle as usize];
+        let b = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }.map(|x| x as f32);
+        let at = (1.0 - b[0] - b[1]) * c[0] + b[0] * c[1] + b[1] * c[2];
+        let cell = at.floor().clamp(Vec2::ZERO, Vec2::new((layout.width - 2) as f32, (layout.height - 2) as f32));
+        let f = (at - cell).clamp(Vec2::ZERO, Vec2::ONE);
+        let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y];
+        let [a, b, c] = weights.map(|weight| (UNITS as f32 * weight).round() as i64);
+        let first = cell.y as usize * layout.width as usize + cell.x as usize;
+        let width = layout.width as usize;
+        for (texel, share) in
+            [first, first + 1, first + width, first + width + 1].into_iter().zip([a, b, c, UNITS - a - b - c])
+        {
+            texels[texel].sum += share;
+            texels[texel].squares += (share as f64 / UNITS as f64).powi(2);
+        }
+    }
+    texels
+}
+
+/// Evenly lit, a surface shows one irradiance: at the borders of charts as inside them.
+fn check_even_light(name: &str, object: &Object, layout: &MapLayout, photons: u32) {
+    let triangles = world_triangles(object);
+    let areas = layer_areas(layout, &triangles);
+    let surface: f64 = areas.iter().sum();
+    // How much of a texel's surroundings on the plane is covered: all of it inside a chart.
+    let flat =
+        |t: &WorldTriangle| WorldTriangle { corners: layout.corners[t.triangle as usize].map(|p| p.extend(0.0)), ..*t };
+    let covered = layer_areas(layout, &triangles.iter().map(flat).collect::<Vec<_>>());
+    let texels = lit_evenly(layout, &triangles, photons);
+    assert_eq!(texels.iter().map(|texel| texel.sum).sum::<i64>(), i64::from(photons) * UNITS, "{name}");
+
+    let mut counted = 0;
+    for (place, is_border) in [("inside charts", false), ("at their borders", true)] {
+        let (mut bias, mut variance, mut squares, mut count) = (0.0, 0.0, 0.0, 0);
+        for (texel, (&area, &covered)) in texels.iter().zip(areas.iter().zip(&covered)) {
+            assert!(area > 0.0 || texel.sum == 0, "{name}: light on a texel without surface");
+            let expected = f64::from(photons) * area / surface;
+            if (covered < 0.999) != is_border {
+                continue;
+            }
+            let deviation = texel.sum as f64 / UNITS as f64 - expected;
+            bias += deviation;
+            variance += texel.squares;
+            if expected > 8.0 {
+                squares += deviation * deviation / texel.squares;
+                count += 1;
+            }
+        }
+        if count < 20 {
+            continue;
+        }
+        counted += count;
+        // Shares of one photon fall on neighbours, so that the variance of the sum is up to four times the sum of theirs.
+        assert!(bias.abs() < 5.0 * (4.0 * variance).sqrt(), "{name}: {bias} of {variance} {place}");
+        let deviation = squares / f64::from(count);
+        let spread = 6.0 * (2.0 / f64::from(count)).sqrt() + 0.03;
+        assert!((deviation - 1.0).abs() < spread, "{name}: {deviation} ± {spread} times the variance expected {place}");
+    }
+    assert!(counted > 500, "{name}: {counted} texels");
+}
+
+fn check_shape(name: &str, mesh: Mesh, map_size: u32) {
+    let object = shapes::object(mesh);
+    let layout = MapLayout::new(&object, map_size);
+    assert!(layout.width.max(layout.height) <= map_size, "{name}: {} × {}", layout.width, layout.height);
+    assert!(layout.width.max(layout.height) > map_size * 9 / 10, "{name}: {} × {}", layout.width, layout.height);
+    check_layout(&object, &layout);
+    check_even_light(name, &object, &layout, 600_000);
+}
+
+#[test]
+fn sphere_is_lit_evenly() {
+    check_shape("sphere", Mesh::sphere(Vec3::ZERO, 1.0, 5), 96);
+}
+
+#[test]
+fn torus_knot_is_lit_evenly() {
+    check_shape("torus knot", shapes::torus_knot(300, 16), 160);
+}
+
+#[test]
+fn l_shaped_room_is_lit_evenly() {
+    check_shape("room", shapes::l_room(), 96);
+}
+
+#[test]
+fn teapot_is_lit_evenly() {
+    check_shape("teapot", shapes::teapot(), 160);
+}
+
+#[test]
+fn scanned_surface_is_lit_evenly() {
+    let mesh = shapes::scanned(180, 0.5);
+    assert!(mesh.triangles.len() >= 100_000);
+    check_shape("scanned", mesh, 160);
+    check_shape("rough", shapes::scanned(180, 3.0), 160);
+}
+
+#[test]
+fn nothing_overlaps() {
+    let shapes = [
+        ("sphere", Mesh::sphere(Vec3::ZERO, 1.0, 5), 300),
+        ("torus knot", shapes::torus_knot(300, 16), 700),
+        ("room", shapes::l_room(), 200),
+        ("teapot", shapes::teapot(), 1500),
+        ("screw", shapes::screw(40), 400),
+        ("fan", shapes::fan(1500, 1), 200),
+        ("fan that goes around twice", shapes::fan(300, 2), 200),
+    ];
+    for (name, mesh, map_size) in shapes {
+        let object = shapes::object(mesh);
+        let layout = MapLayout::new(&object, map_size);
+        println!("{name}: {} charts, {} cells", layout.chart_count, layout.cell_count);
+        check_layout(&object, &layout);
+        check_plane(&object, &layout);
+    }
+}
+
+#[test]
+fn front_and_back_of_a_thin_plate_stay_apart() {
+    // A closed plate 1 m wide and 0.1 mm thick, on texels of a centimetre.
+    let mut mesh = Mesh::cuboid(Vec3::ZERO, Vec3::new(1.0, 1e-4, 1.0));
+    mesh.chart = Chart::Automatic;
+    let object = shapes::object(mesh);
+    let layout = MapLayout::with_texel_width(&object, 0.01);
+    check_layout(&object, &layout);
+    assert_eq!(layout.layers, 1);
+    let facing = |up: f32| {
+        let object = &object;
+        let charts = &layout.charts;
+        (0..12).filter(move |&t| object.mesh.double_area_normal(t).y * up > 0.1).map(move |t| charts[t])
+    };
+    assert!(facing(1.0).all(|chart| facing(-1.0).all(|other| other != chart)));
+    // Its edges take next to nothing.
+    assert!(layout.texel_count() < 3 * 2 * 100 * 100, "{}", layout.texel_count());
+}
+
+#[test]
+fn open_surfaces_have_two_layers() {
+    assert_eq!(MapLayout::new(&shapes::object(shapes::screw(1)), 64).layers, 2);
+    assert_eq!(MapLayout::new(&shapes::object(shapes::l_room()), 64).layers, 1);
+}
+
+#[test]
+fn texels_are_few_however_small_the_triangles() {
+    let surfaces = [
+        ("smooth", shapes::scanned(180, 0.1)),
+        ("rough", shapes::scanned(180, 3.0)),
+        ("grains", grains(20_000)),
+        ("facets apart", apart(shapes::scanned(60, 0.5))),
+    ];
+    for (name, mesh) in surfaces {
+        let object = shapes::object(mesh);
+        let surface: f64 = world_triangles(&object).iter().map(area).sum();
+        for asked in [1000.0, 10_000.0] {
+            let layout = MapLayout::with_texel_width(&object, (surface / asked).sqrt() as f32);
+            check_layout(&object, &layout);
+            let texels = f64::from(layout.width) * f64::from(layout.height);
+            println!("{name}: {texels} texels for {asked}, {} charts, {} cells", layout.chart_count, layout.cell_count);
+            assert!(texels < 5.0 * asked + 100.0, "{name}: {texels} texels where the area asks for {asked}");
+        }
+        check_even_light(
+            name,
+            &object,
+            &MapLayout::with_texel_width(&object, (surface / 4000.0).sqrt() as f32),
+            200_000,
+        );
+    }
+}
+
+/// Small tetrahedra, scattered.
+fn grains(count: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    for grain in 0..count {
+        let at = DVec3::from([0, 1, 2].map(|k| 100.0 * shapes::hashed(3 * grain + k)));
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| (at + 0.1 * p).as_vec3()));
+        mesh.triangles.extend([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t: [u32; 3]| t.map(|v| first + v)));
+    }
+    mesh
+}
+
+/// Every triangle moved a little along its normal, so that none borders on another.
+fn apart(mesh: Mesh) -> Mesh {
+    let mut result = Mesh::default();
+    for triangle in 0..mesh.triangles.len() {
+        let first = result.positions.len() as u32;
+        let shift = mesh.double_area_normal(triangle).normalize_or_zero() * 1e-3 * (triangle % 7) as f32;
+        result.positions.extend(mesh.corners(triangle).map(|p| p + shift));
+        result.triangles.push([first, first + 1, first + 2]);
+    }
+    result
+}
+
+#[test]
+fn threads_do_not_matter() {
+    let object = shapes::object(shapes::scanned(100, 1.0));
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| [200, 900].map(|map_size| MapLayout::new(&object, map_size)))
+    };
+    let alone = on(1);
+    assert!((2..5).all(|threads| on(threads) == alone));
+}
+
+#[test]
+fn placement_counts() {
+    let mut object = shapes::object(shapes::torus_knot(60, 8));
+    object.world_from_object = glam::Affine3A::from_scale(Vec3::new(-3.0, 1.0, 0.2));
+    let layout = MapLayout::new(&object, 300);
+    check_layout(&object, &layout);
+    check_plane(&object, &layout);
+}
+
+prop_compose! {
+    /// Any mesh at all: triangles over few points, some of which coincide, lie on a line or are far away.
+    fn any_mesh()(
+        points in prop::collection::vec(prop::array::uniform3(-4i8..4), 3..12),
+        free in prop::collection::vec(prop::array::uniform3(-1.0f32..1.0), 0..12),
+        scale in prop::sample::select(vec![1e-6f32, 1.0, 1e6]),
+        picks in prop::collection::vec(prop::array::uniform3(0usize..100), 1..60),
+    ) -> Mesh {
+        let mut mesh = Mesh::default();
+        mesh.positions = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
+        mesh.positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
+        let count = mesh.positions.len();
+        mesh.triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
+        mesh
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_mesh_has_charts(mesh in any_mesh(), map_size in 2u32..200) {
+        let object = shapes::object(mesh);
+        let layout = MapLayout::new(&object, map_size);
+        let triangles = world_triangles(&object);
+        check_layout(&object, &layout);
+        if !triangles.is_empty() {
+            let deposited: i64 = lit_evenly(&layout, &triangles, 100).iter().map(|texel| texel.sum).sum();
+            prop_assert_eq!(deposited, 100 * UNITS);
+        }
+    }
+
+    #[test]
+    fn charts_of_any_mesh_do_not_overlap(mesh in any_mesh()) {
+        let object = shapes::object(mesh);
+        let layout = MapLayout::new(&object, 400);
+        if layout.cell_count == 0 && layout.width.max(layout.height) <= 400 {
+            check_plane_overlap(&object, &layout);
+        }
+    }
+}
+
+/// Checks that no two triangles overlap on the plane, however few or large.
+fn check_plane_overlap(object: &Object, layout: &MapLayout) {
+    let triangles: Vec<usize> = world_triangles(object).iter().map(|t| t.triangle as usize).collect();
+    for (k, &one) in triangles.iter().enumerate() {
+        for &other in &triangles[k + 1..] {
+            assert!(!meet(&places(layout, one), &places(layout, other), 2e-2), "triangles {one} and {other} overlap");
+        }
+    }
+}
