@@ -66,10 +66,11 @@ impl Rendered {
             (Expectation::Greatest, at) => format!("to be greatest at {}", at.as_deref().unwrap_or_default()),
             (Expectation::Least, at) => format!("to be least at {}", at.as_deref().unwrap_or_default()),
         };
+        let is_labelled = check.at.is_some() || !check.among.is_empty();
         let separator = if check.at.is_some() { " · " } else { " → " };
-        let labelled: Vec<_> = match check.at {
-            Some(_) => line.labels.iter().zip(&shown).map(|(label, value)| format!("{label} {value}")).collect(),
-            None => shown,
+        let labelled: Vec<_> = match is_labelled {
+            true => line.labels.iter().zip(&shown).map(|(label, value)| format!("{label}: {value}")).collect(),
+            false => shown,
         };
         Judgement {
             holds,
