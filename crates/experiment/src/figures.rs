@@ -249,7 +249,8 @@ mod tests {
         assert!((checkered.mean - 1.0).abs() < 0.05 && checkered.spottedness > 2.0, "{checkered:?}");
         // Independent numbers of mean 2 and deviation ½.
         let noise = |x: i64, y: i64| {
-            2.0 + 0.5 * if (x * 2_654_435_761 + y * 40_503 * 77_777) >> 13 & 1 == 0 { 1.0 } else { -1.0 }
+            let mixed = (x * 374_761_393 + y * 668_265_263) & 0xffff_ffff;
+            2.0 + if ((mixed ^ mixed >> 13) * 1_274_126_177) >> 16 & 1 == 0 { 0.5 } else { -0.5 }
         };
         let noisy = field(noise, &areas).measure(0.5);
         assert!((noisy.spottedness - 0.25).abs() < 0.06, "{noisy:?}");
