@@ -189,7 +189,7 @@ struct Light {
     strength: vec3<f32>,
     /// Probability with which the camera pass chooses a light up to and including this one.
     cumulative_probability: f32,
-    /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+    /// Unit axis of a spot, or of the sphere of the profile `paper`; cosine and sine of an environment's turn about +y.
     axis: vec3<f32>,
     /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
     kind: u32,

@@ -222,7 +222,7 @@ shared_structs! {
         strength: [f32; 3],
         /// Probability with which the camera pass chooses a light up to and including this one.
         cumulative_probability: f32,
-        /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+        /// Unit axis of a spot, or of the sphere of the profile `paper`; cosine and sine of an environment's turn about +y.
         axis: [f32; 3],
         /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
         kind: u32,
@@ -286,6 +286,10 @@ shared_structs! {
         scene_center: [f32; 3],
         /// Its radius, metres.
         scene_radius: f32,
+        /// In the profile `paper`, the energy of each ray.
+        ray_energy: [f32; 3],
+        /// In the profile `paper`, the steps of each angle; 0 for random angles.
+        grid_side: u32,
         /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
         /// at neighbouring points.
         order: [[u32; 4]; 8],
@@ -615,6 +619,16 @@ pub mod ledger {
     pub const ACCOUNTS: u32 = 8;
 }
 
+/// Values of the override constant `paper_refraction`.
+pub mod paper_refraction {
+    /// Light is physical.
+    pub const NONE: u32 = 0;
+    /// The paper's model, refraction by its equation 3 as printed.
+    pub const PRINTED: u32 = 1;
+    /// The paper's model, refraction by Snell's law.
+    pub const EXACT: u32 = 2;
+}
+
 /// Constants that both sides know: name in WGSL, value.
 pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
@@ -645,6 +659,9 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("WRAP_CLAMP", texture_flag::WRAP_CLAMP),
     ("TEXTURE_NEAREST", texture_flag::NEAREST),
     ("TEXTURE_CHANNEL_SHIFT", texture_flag::CHANNEL_SHIFT),
+    ("PAPER_NONE", paper_refraction::NONE),
+    ("PAPER_PRINTED", paper_refraction::PRINTED),
+    ("PAPER_EXACT", paper_refraction::EXACT),
     ("LIGHT_SPHERE", light_kind::SPHERE),
     ("LIGHT_POINT", light_kind::POINT),
     ("LIGHT_SPOT", light_kind::SPOT),

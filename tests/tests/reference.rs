@@ -64,6 +64,7 @@ fn both(scene: &Scene) -> Both {
             ReferenceEmission::Aimed(&discs)
         }
         Emission::Unaimed => ReferenceEmission::Unaimed,
+        Emission::Paper { .. } => panic!("the reference follows the physical model"),
         Emission::Toward(list) => {
             spheres = list
                 .iter()

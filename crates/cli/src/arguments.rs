@@ -7,6 +7,7 @@ use clap::{Args as _, FromArgMatches as _, Subcommand as _};
 use crate::commands::{
     bake::BakeArguments,
     completions::{CompletionsArguments, ManArguments},
+    experiment::ExperimentArguments,
     inspect::InspectArguments,
     render::RenderArguments,
 };
@@ -31,6 +32,8 @@ Examples:
       tells what the scene holds and what it needs on the GPU, and which GPUs there are
   source <(diacaustic completions bash)
       completes the command line in this shell
+  diacaustic experiment assets/experiments/paper.toml
+      renders the tables of an experiment file and writes paper/index.html
 
 Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails, 130 after Ctrl-C,
 which writes what there is; a second one ends the program at once.";
@@ -49,6 +52,8 @@ pub enum Command {
     Bake(BakeArguments),
     /// Tell what a scene holds, without rendering it
     Inspect(InspectArguments),
+    /// Sweep over a scene: tables of pictures with figures, findings judged, all on one page
+    Experiment(ExperimentArguments),
     /// Print what a shell needs to complete the command line
     Completions(CompletionsArguments),
     /// Write the manual's pages

@@ -2,5 +2,6 @@
 
 pub mod bake;
 pub mod completions;
+pub mod experiment;
 pub mod inspect;
 pub mod render;

@@ -18,6 +18,9 @@ pub enum Error {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] diacaustic_output::Error),
+    /// An experiment did not come about.
+    #[error(transparent)]
+    Experiment(#[from] diacaustic_experiment::Error),
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
@@ -92,6 +95,7 @@ impl Error {
             Self::Interrupted { signal } | Self::BakeInterrupted { signal } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
+            Self::Experiment(error) => error.exit_status(),
             Self::Render(_) | Self::Device(_) | Self::Output(_) | Self::Signals(_) | Self::Manual { .. } => 1,
         }
     }

@@ -43,6 +43,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Ok(())
         }
         Command::Man(arguments) => commands::completions::write_manual(&arguments),
+        Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

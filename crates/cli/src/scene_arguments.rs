@@ -47,7 +47,7 @@ pub struct SceneArguments {
     pub allow_outside: bool,
 }
 
-fn parse_override(text: &str) -> Result<Override, String> {
+pub(crate) fn parse_override(text: &str) -> Result<Override, String> {
     Override::parse(text).map_err(|error| match error {
         // The argument is named before the message.
         SceneError::Override { problem, .. } => problem,

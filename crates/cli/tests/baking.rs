@@ -5,7 +5,7 @@ use std::{path::Path, process::Command};
 use diacaustic::{
     Film,
     glam::Vec3,
-    scene::{Material, MaterialKind, GltfOptions, Scene, ToneCurve, load_gltf, parse_scene},
+    scene::{GltfOptions, Material, MaterialKind, Scene, ToneCurve, load_gltf, parse_scene},
 };
 use diacaustic_tests::{mean, render};
 

@@ -9,7 +9,7 @@ use self::{
     canvas::{Canvas, Color, LETTER},
     scale::Scale,
 };
-use crate::{Error, Irradiance, png::write_bytes};
+use crate::{Error, Irradiance, png::write_rgb8};
 
 /// The least width of a map in the picture, pixels: smaller maps are enlarged by a whole factor.
 const LEAST_WIDTH: u32 = 512;
@@ -47,7 +47,7 @@ pub(crate) fn write_false_colors(path: &Path, map: &Irradiance<'_>) -> Result<()
         draw_map(&mut canvas, map, texels, &scale, [plan.gap, top], plan.enlarged);
     }
     draw_scale(&mut canvas, &scale, &plan);
-    write_bytes(path, plan.width, plan.height, canvas.bytes())
+    write_rgb8(path, plan.width, plan.height, canvas.bytes())
 }
 
 /// Where things stand in the picture, pixels.

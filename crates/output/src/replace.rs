@@ -30,6 +30,14 @@ where
     Ok(())
 }
 
+/// Writes a text file.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
+    replace(path, |file| file.write_all(text.as_bytes()))
+}
+
 /// Checks, without changing anything, that a file can be written: its folder exists and takes new files.
 ///
 /// # Errors

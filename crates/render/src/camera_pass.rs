@@ -242,7 +242,8 @@ fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {
         sphere_count: lights.sphere_count as u32,
         first_sky_light: lights.first_sky as u32,
         max_bounces: settings.max_bounces,
-        exposure: 1.0 / (index * index),
+        // Radiance follows the index, but not in the profile `paper`.
+        exposure: if settings.paper.is_some() { 1.0 } else { 1.0 / (index * index) },
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use diacaustic_scene::{Material, MaterialKind, RenderSettings, SMOOTH, Scene};
-use diacaustic_shaders::{Kernel, light_kind};
+use diacaustic_scene::{Material, MaterialKind, PaperRefraction, RenderSettings, SMOOTH, Scene};
+use diacaustic_shaders::{Kernel, light_kind, paper_refraction};
 
 use crate::{
     gpu::Gpu,
@@ -40,6 +40,8 @@ pub(crate) struct Features {
     guide: bool,
     /// Whether photons have footprints.
     footprints: bool,
+    /// The 2016 paper's model of light, and how it refracts.
+    paper_refraction: u32,
     /// Whether camera paths note which texels they see.
     sightings: bool,
     /// Light kept apart by how it came.
@@ -68,6 +70,7 @@ impl Features {
             photon_light_kind: 0,
             guide: false,
             footprints: false,
+            paper_refraction: paper_constant(&scene.settings),
             sightings: false,
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
@@ -77,10 +80,10 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
-        let Self { gloss, conductors, textures, vertex_colors, holes, dispersion, .. } = self;
+        let Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, .. } = self;
         let RenderSettings { guiding: guide, footprints, .. } = *settings;
         let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
-        Self { gloss, conductors, textures, vertex_colors, holes, dispersion, ..photons }
+        Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -109,12 +112,21 @@ impl Features {
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),
+            ("paper_refraction", f64::from(self.paper_refraction)),
             ("notes_sightings", f64::from(self.sightings)),
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),
             ("light_group_count", f64::from(self.light_groups)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
+    }
+}
+
+fn paper_constant(settings: &RenderSettings) -> u32 {
+    match settings.paper.map(|paper| paper.refraction) {
+        None => paper_refraction::NONE,
+        Some(PaperRefraction::Printed) => paper_refraction::PRINTED,
+        Some(PaperRefraction::Exact) => paper_refraction::EXACT,
     }
 }
 

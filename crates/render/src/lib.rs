@@ -93,6 +93,7 @@ mod map_plan;
 mod map_records;
 mod map_sums;
 mod material_records;
+mod paper;
 mod photon_pass;
 mod pilot;
 mod random;

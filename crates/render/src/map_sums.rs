@@ -108,7 +108,7 @@ impl EnergyMaps {
         let purpose = if groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
         let words_bytes = groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * WORDS_BYTES;
-        let areas: Vec<f32> = placements.iter().flatten().flat_map(|map| &map.areas).map(|&area| area as f32).collect();
+        let areas: Vec<f32> = placements.iter().flatten().flat_map(MapPlacement::divisors).collect();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
         let areas = gpu.filled(AREAS, &areas)?;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -176,6 +176,7 @@ impl EnergyMaps {
             areas: placement.areas.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,
+            paper_size: placement.paper_size,
         }))
     }
 }

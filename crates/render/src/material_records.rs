@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use crate::{
     lights::medium_key,
+    paper,
     spectra_records::{colored_index, row_of},
 };
 
@@ -26,13 +27,17 @@ pub(crate) fn material(scene: &Scene, index: usize, colored: bool) -> shaders::M
         MaterialKind::Dielectric { .. } => [row_of(scene, index).map_or(-1.0, |row| row as f32), 0.0, 0.0],
         _ => scattering.specular,
     };
-    shaders::Material {
+    let mut record = shaders::Material {
         specular,
         kind: scattering.kind | caster | receiver | textured,
         medium: medium_key(scene, index),
         emission: source.emission.into(),
         ..scattering
+    };
+    if let (Some(profile), MaterialKind::Dielectric { .. }) = (&scene.settings.paper, kind) {
+        paper::color_dielectric(profile, scene.ambient, &mut record);
     }
+    record
 }
 
 /// What a material does to light, without its roles.

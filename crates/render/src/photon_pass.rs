@@ -18,6 +18,7 @@ use crate::{
     lights::{Emitter, Lights},
     map_plan::MapPlan,
     map_sums::EnergyMaps,
+    paper,
     pilot::{Pilot, PilotRound},
     random::combine,
     renderer::MOST_IN_FLIGHT,
@@ -144,7 +145,11 @@ impl Photons {
         let mut lights = Vec::new();
         let mut turns = 0;
         for emitter in &scene.lights.emitters {
-            let Some(emission) = Emission::toward(emitter, scene.casters) else { continue };
+            let emission = match &scene.settings.paper {
+                Some(profile) => paper::emission(profile, scene.casters),
+                None => Emission::toward(emitter, scene.casters),
+            };
+            let Some(emission) = emission else { continue };
             let features = scene.features.for_photons_of(emitter.kind(), scene.settings);
             let guide = Guide::even(emitter, &emission);
             lights.push(PhotonLight {
@@ -170,6 +175,8 @@ impl Photons {
                 units_per_watt,
                 scene_center: scene.around.center.into(),
                 scene_radius: scene.around.radius,
+                ray_energy: scene.settings.paper.map_or([0.0; 3], |profile| profile.energy.into()),
+                grid_side: scene.settings.paper.map_or(0, |profile| paper::grid_side(&profile, scene.settings)),
                 ..Default::default()
             },
             seed: scene.settings.seed,
@@ -317,7 +324,8 @@ impl Photons {
             lane_count: block.count.div_ceil(self.photons_per_invocation),
             seed: combine(combine(self.seed, SEED_STREAM), emitter.number as u32),
             target_count: aimed.len() as u32,
-            ordered: u32::from(block.order.is_some()),
+            // The order follows emission numbers, which the profile `paper` does not draw.
+            ordered: u32::from(block.order.is_some() && !matches!(light.emission, Emission::Paper { .. })),
             flux_factor: flux_factor(emitter, self.turns),
             guide_columns: light.guide.aim.columns as u32,
             guide_rows: light.guide.aim.rows as u32,

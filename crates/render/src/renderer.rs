@@ -88,7 +88,9 @@ impl OnDevice {
     /// Turns the sums of the photons so far into irradiance, if that is not done.
     fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
         if self.unresolved {
-            pass.run(gpu, &self.maps, self.photons.units_per_watt, self.photon_count);
+            // In the profile `paper` photons do not share the light's flux.
+            let sharing = if self.scene.settings.paper.is_some() { 1 } else { self.photon_count };
+            pass.run(gpu, &self.maps, self.photons.units_per_watt, sharing);
             self.unresolved = false;
         }
     }

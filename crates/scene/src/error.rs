@@ -34,6 +34,8 @@ pub enum Subject {
     Render,
     /// The output settings.
     Output,
+    /// The settings of the profile `paper`.
+    Paper,
     /// A material.
     Material {
         /// Its place in [`Scene::materials`](crate::Scene::materials).
@@ -64,6 +66,7 @@ impl fmt::Display for Subject {
             Self::Camera => f.write_str("camera"),
             Self::Render => f.write_str("render"),
             Self::Output => f.write_str("output"),
+            Self::Paper => f.write_str("paper"),
             Self::Material { name, .. } => write!(f, "material {name:?}"),
             Self::Light { name, .. } => write!(f, "light {name:?}"),
             Self::Object { name, .. } => write!(f, "object {name:?}"),

@@ -5,6 +5,7 @@ mod lights;
 mod materials;
 mod objects;
 mod overrides;
+mod paper;
 mod refraction;
 mod shapes;
 mod table;
@@ -19,6 +20,7 @@ use self::{
     lights::LightReader,
     materials::MaterialReader,
     objects::ObjectReader,
+    paper::{is_paper, read_paper},
     table::{Document, Table},
 };
 use crate::{
@@ -121,6 +123,7 @@ struct Sections<'d> {
     camera: Option<Table<'d>>,
     render: Option<Table<'d>>,
     output: Option<Table<'d>>,
+    paper: Option<Table<'d>>,
     materials: Vec<(String, Table<'d>)>,
     lights: Vec<Table<'d>>,
     objects: Vec<Table<'d>>,
@@ -135,6 +138,7 @@ impl<'d> Sections<'d> {
             "camera",
             "render",
             "output",
+            "paper",
             "materials",
             "lights",
             "objects",
@@ -148,6 +152,7 @@ impl<'d> Sections<'d> {
             camera: optional("camera", "a table: [camera]")?,
             render: optional("render", "a table: [render]")?,
             output: optional("output", "a table: [output]")?,
+            paper: optional("paper", "a table: [paper]")?,
             materials: named_tables(&root, "materials", "tables: [materials.a_name]")?,
             lights: listed_tables(&root, "lights", "an array of tables: [[lights]]")?,
             objects: listed_tables(&root, "objects", "an array of tables: [[objects]]")?,
@@ -160,7 +165,7 @@ impl<'d> Sections<'d> {
         let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
         let (background, ambient) = (color("background")?, color("ambient")?);
         let camera = self.camera.as_ref().map(read_camera).transpose()?;
-        let settings = self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default();
+        let settings = self.read_settings()?;
         let output = self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default();
         let lights = LightReader::new(base_dir).read_all(&self.lights)?;
         let mut reader = ObjectReader::new(base_dir, options, materials);
@@ -169,6 +174,24 @@ impl<'d> Sections<'d> {
         let materials = reader.materials;
         let scene = Scene { background, ambient, camera, settings, output, lights, materials, objects };
         Ok(ReadScene { scene, warnings: reader.warnings, tables_of_objects })
+    }
+
+    fn read_settings(&self) -> Result<RenderSettings, Error> {
+        let is_paper = self.render.as_ref().map_or(Ok(false), is_paper)?;
+        let default = match is_paper {
+            // What the paper has not: unset, it is off.
+            true => RenderSettings { guiding: false, max_bounces: 0, ..RenderSettings::default() },
+            false => RenderSettings::default(),
+        };
+        let settings = self.render.as_ref().map_or(Ok(default.clone()), |table| read_settings(table, default))?;
+        match &self.paper {
+            Some(table) if !is_paper => {
+                Err(table.error("counts only with profile = \"paper\" in [render]; set it, or leave [paper] out"))
+            }
+            table => {
+                Ok(RenderSettings { paper: is_paper.then(|| read_paper(table.as_ref())).transpose()?, ..settings })
+            }
+        }
     }
 
     /// Adds to an error of [`Scene::validate`] where the file sets what is at fault.
@@ -184,6 +207,7 @@ impl<'d> Sections<'d> {
             Subject::Camera => self.camera.as_ref(),
             Subject::Render => self.render.as_ref(),
             Subject::Output => self.output.as_ref(),
+            Subject::Paper => self.paper.as_ref(),
             Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),
             Subject::Light { index, .. } => self.lights.get(*index),
             Subject::Object { index, .. } => tables_of_objects.get(*index).and_then(|table| self.objects.get(*table)),
@@ -226,7 +250,7 @@ fn read_camera(table: &Table<'_>) -> Result<Camera, Error> {
     })
 }
 
-fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
+fn read_settings(table: &Table<'_>, default: RenderSettings) -> Result<RenderSettings, Error> {
     table.allow_only(&[
         "width",
         "height",
@@ -241,8 +265,8 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "map_budget",
         "filter",
         "wavelength",
+        "profile",
     ])?;
-    let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
     let filters = [("box", PixelFilter::Box), ("blackman-harris", PixelFilter::BlackmanHarris)];
     Ok(RenderSettings {
@@ -259,6 +283,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         map_budget: table.get("map_budget").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
         wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
+        paper: None,
     })
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
-use crate::{Camera, Layer, Light, Material, Mesh};
+use crate::{Camera, Layer, Light, Material, Mesh, PaperProfile};
 
 /// Everything that a render depends on. Built by a reader of this crate or in code; [`Scene::validate`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -97,6 +97,8 @@ pub struct RenderSettings {
     /// The wavelength, nm, of the only light that there is; all of it if none. Pictures and maps are then gray: how much of this
     /// wavelength there is, against 1 for white of radiance 1.
     pub wavelength: Option<f32>,
+    /// The 2016 paper's model of light, in place of the physical one.
+    pub paper: Option<PaperProfile>,
 }
 
 /// The pixel's reconstruction filter.
@@ -148,6 +150,7 @@ impl Default for RenderSettings {
             map_budget: None,
             filter: PixelFilter::default(),
             wavelength: None,
+            paper: None,
         }
     }
 }

@@ -74,6 +74,7 @@ fn every_key_is_read() {
         map_budget: Some(64),
         filter: PixelFilter::BlackmanHarris,
         wavelength: Some(550.0),
+        paper: None,
     };
     assert_eq!(scene.settings, settings);
     assert_eq!(scene.output.files, [Path::new("base/a.png"), Path::new("/b/c.EXR")]);
