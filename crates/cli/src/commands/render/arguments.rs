@@ -39,7 +39,7 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N", value_parser = parse_samples)]
     pub samples: Option<u32>,
 
-    /// Render frames A to B, both included, of the scene's [animation] into numbered files: NAME.0001.png
+    /// Render frames A to B, both included, of the scene's animation into numbered files: NAME.0001.png
     ///
     /// Every file that is written has the frame's number before its ending. A frame is the same whether it is rendered alone or with others;
     /// --time-limit is that of each.
