@@ -1,6 +1,6 @@
 // The layers of the picture; docs/layers.md.
 
-import package::layout::camera_pass::{data_layers, group_layers, light_layers, LIGHT_LAYERS};
+import package::layout::path_pass::{data_layers, group_layers, light_layers, LIGHT_LAYERS};
 import package::layout::features::{has_data_layers, has_light_layers, light_group_count};
 
 /// Adds radiance, W/(m² sr), to one of a pixel's LAYER_ sums.

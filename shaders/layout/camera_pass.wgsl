@@ -1,31 +1,15 @@
-// Bind groups 1 and 2 of the camera pass.
+// Binding 1 of group 1 in the camera pass; the others are in path_pass.wgsl.
 
-/// One dispatch of the camera pass: one sample of every pixel.
+/// The lens and the picture.
 struct CameraParams {
-    /// Centre of the lens, metres, world frame.
-    position: vec3<f32>,
-    /// Radius of the lens, metres.
-    aperture_radius: f32,
     /// From the centre of the picture to its right edge, at distance 1.
     half_right: vec3<f32>,
-    /// Distance at which the picture is sharp, metres.
-    focus_distance: f32,
+    /// Radius of the lens, metres.
+    aperture_radius: f32,
     /// From the centre of the picture to its upper edge, at distance 1.
     half_up: vec3<f32>,
-    /// Index of the sample.
-    sample_index: u32,
-    /// Unit direction of view.
-    forward: vec3<f32>,
-    /// Seed of the camera pass.
-    seed: u32,
-    /// Radiance beyond every object, W/(m² sr).
-    background: vec3<f32>,
-    /// The most surfaces that a path meets before it is cut off.
-    max_depth: u32,
-    /// Ambient radiance of the Phong model, W/(m² sr).
-    ambient: vec3<f32>,
-    /// Lights on the device.
-    light_count: u32,
+    /// Distance at which the picture is sharp, metres.
+    focus_distance: f32,
     /// The lens axis that is to the right in the picture, unit length, world frame.
     lens_right: vec3<f32>,
     /// Width of the picture, pixels.
@@ -34,91 +18,8 @@ struct CameraParams {
     lens_up: vec3<f32>,
     /// Height of the picture, pixels.
     height: u32,
-    /// The media that the camera stands in, as keys.
-    media: vec4<u32>,
-    /// Spheres among the lights, which come first.
-    sphere_count: u32,
-    /// The first light that is infinitely far; those after it are too.
-    first_sky_light: u32,
-    /// The diffuse surfaces that a path meets after its first one.
-    max_bounces: u32,
-    /// Factor on everything seen: 1/n² in a medium of index n.
-    exposure: f32,
     /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
     filter_inverse_cdf: array<vec4<f32>, 16>,
 }
 
-/// What the camera pass accumulates.
-struct Film {
-    /// Rays traced, low and high word.
-    rays_low: atomic<u32>,
-    rays_high: atomic<u32>,
-    /// Invocations that an adapter's loop limit cut short: any makes the result worthless.
-    unfinished: atomic<u32>,
-    /// Unused.
-    padding: u32,
-    /// For each pixel, row by row from the top left: the sum of its samples' radiance, W/(m² sr), and their number.
-    pixels: array<vec4<f32>>,
-}
-
-/// What a camera path saw of the energy maps.
-struct Sighting {
-    /// The layer that it met first, two for each object, or NONE.
-    layer: u32,
-    /// Where on the map's plane it met it.
-    x: f32,
-    /// The same along y.
-    y: f32,
-    /// The layer that it met last, after diffuse surfaces, or NONE.
-    bounced_layer: u32,
-    /// Where on the map's plane it met that.
-    bounced_x: f32,
-    /// The same along y.
-    bounced_y: f32,
-    /// Radiance in the picture for an irradiance of 1 W/m² at the first place, 1/sr, mean of the channels.
-    weight: f32,
-    /// Radiance that the path gathered, W/(m² sr), mean of the channels.
-    radiance: f32,
-}
-
-/// Sums over a pixel's samples of what they met first, and their deviations.
-struct DataLayers {
-    /// Share of light that the surface sends on.
-    albedo: vec3<f32>,
-    /// Samples that met a surface.
-    surfaces: f32,
-    /// Unit shading normal, world frame, on the side of the camera.
-    normal: vec3<f32>,
-    /// Number, from 1, of the object that the pixel's first sample met; 0 without one.
-    object: u32,
-    /// Place, metres, world frame.
-    position: vec3<f32>,
-    /// Number, from 1, of the material that the pixel's first sample met; 0 without one.
-    material: u32,
-    /// Squared deviations of the samples' radiance from their mean, (W/(m² sr))².
-    squares: vec3<f32>,
-    /// Distance from the lens along the view, metres.
-    depth: f32,
-}
-
-/// The layers of light, in the order of their sums: docs/layers.md.
-const LAYER_EMISSION: u32 = 0u;
-const LAYER_DIRECT: u32 = 1u;
-const LAYER_CAUSTIC: u32 = 2u;
-const LAYER_INDIRECT: u32 = 3u;
-/// Layers of light.
-const LIGHT_LAYERS: u32 = 4u;
-
-@group(1) @binding(0) var<uniform> camera_params: CameraParams;
-/// Irradiance of each texel, W/m², in the order of the maps' tiles, row by row; the last component is unused. With several light groups, of each
-/// texel first all light's, then each group's.
-@group(2) @binding(0) var irradiance: texture_2d<f32>;
-@group(2) @binding(1) var<storage, read_write> film: Film;
-/// Where paths note what they see, an entry for each pixel.
-@group(2) @binding(2) var<storage, read_write> sightings: array<Sighting>;
-/// For each pixel the sums of its layers of light, W/(m² sr); the last component is unused.
-@group(2) @binding(3) var<storage, read_write> light_layers: array<vec4<f32>>;
-/// An entry for each pixel.
-@group(2) @binding(4) var<storage, read_write> data_layers: array<DataLayers>;
-/// For each pixel the sums of each light group's light, then of each one's caustic, then of light without group, W/(m² sr); the last component is unused.
-@group(2) @binding(5) var<storage, read_write> group_layers: array<vec4<f32>>;
+@group(1) @binding(1) var<uniform> camera_params: CameraParams;

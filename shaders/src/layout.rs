@@ -307,40 +307,24 @@ shared_structs! {
         /// The cell of the guide of the next two.
         place_cell: u32,
     }
-    /// One dispatch of the camera pass: one sample of every pixel.
-    struct CameraParams {
+    /// One dispatch of such a pass: one sample of every pixel.
+    struct PathParams {
         /// Centre of the lens, metres, world frame.
         position: [f32; 3],
-        /// Radius of the lens, metres.
-        aperture_radius: f32,
-        /// From the centre of the picture to its right edge, at distance 1.
-        half_right: [f32; 3],
-        /// Distance at which the picture is sharp, metres.
-        focus_distance: f32,
-        /// From the centre of the picture to its upper edge, at distance 1.
-        half_up: [f32; 3],
         /// Index of the sample.
         sample_index: u32,
         /// Unit direction of view.
         forward: [f32; 3],
-        /// Seed of the camera pass.
+        /// Seed of the pass.
         seed: u32,
         /// Radiance beyond every object, W/(m² sr).
         background: [f32; 3],
-        /// The most surfaces that a path meets before it is cut off.
+        /// The most casters that a path meets before it is cut off.
         max_depth: u32,
         /// Ambient radiance of the Phong model, W/(m² sr).
         ambient: [f32; 3],
         /// Lights on the device.
         light_count: u32,
-        /// The lens axis that is to the right in the picture, unit length, world frame.
-        lens_right: [f32; 3],
-        /// Width of the picture, pixels.
-        width: u32,
-        /// The lens axis that is up in the picture, unit length, world frame.
-        lens_up: [f32; 3],
-        /// Height of the picture, pixels.
-        height: u32,
         /// The media that the camera stands in, as keys.
         media: [u32; 4],
         /// Spheres among the lights, which come first.
@@ -351,10 +335,59 @@ shared_structs! {
         max_bounces: u32,
         /// Factor on everything seen: 1/n² in a medium of index n.
         exposure: f32,
+    }
+    /// The lens and the picture.
+    struct CameraParams {
+        /// From the centre of the picture to its right edge, at distance 1.
+        half_right: [f32; 3],
+        /// Radius of the lens, metres.
+        aperture_radius: f32,
+        /// From the centre of the picture to its upper edge, at distance 1.
+        half_up: [f32; 3],
+        /// Distance at which the picture is sharp, metres.
+        focus_distance: f32,
+        /// The lens axis that is to the right in the picture, unit length, world frame.
+        lens_right: [f32; 3],
+        /// Width of the picture, pixels.
+        width: u32,
+        /// The lens axis that is up in the picture, unit length, world frame.
+        lens_up: [f32; 3],
+        /// Height of the picture, pixels.
+        height: u32,
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
-    /// What a camera path saw of the energy maps.
+    /// Which texels of a lightmap a dispatch samples.
+    struct BakeParams {
+        /// Index of the object.
+        object: u32,
+        /// Texels among the object's that hold surface before the dispatch's first.
+        first_texel: u32,
+        /// Texels that the dispatch samples.
+        texel_count: u32,
+        /// Workgroups along x.
+        groups_x: u32,
+        /// Texels of the lightmap along x.
+        width: u32,
+        /// Texels of the lightmap along y.
+        height: u32,
+        /// Texels over the area of their surface, 1/m², on average over the map.
+        texel_density: f32,
+    }
+    /// A texel that holds surface.
+    struct BakeTexel {
+        /// Its column.
+        column: u32,
+        /// Its row.
+        row: u32,
+        /// 0 on the front, 1 on the back.
+        side: u32,
+        /// Unused.
+        padding: u32,
+        /// The media in front of it, as keys.
+        media: [u32; 4],
+    }
+    /// What a path saw of the energy maps.
     struct Sighting {
         /// The layer that it met first, two for each object, or NONE.
         layer: u32,

@@ -6,11 +6,11 @@
 mod layout;
 
 pub use layout::{
-    AimTarget, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light, MAX_AIM_TARGETS, MapLayer,
-    MapSquare, MapTile, Material, MaterialTextures, NONE, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS,
-    ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SurfaceTexture,
-    TextureCoordinates, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger, light_kind, light_layer,
-    map_tile, material_kind, texture_flag, triangle_flag,
+    AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, LOST, Landing, Light,
+    MAX_AIM_TARGETS, MapLayer, MapSquare, MapTile, Material, MaterialTextures, NONE, PathParams, PhotonParams,
+    QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
+    SharedStruct, Sighting, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners, VertexColors,
+    WAVELENGTH_STEPS, ledger, light_kind, light_layer, map_tile, material_kind, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.
@@ -38,6 +38,8 @@ macro_rules! kernel {
 pub const PHOTONS: Kernel = kernel!("photons", Some("emit_photons"));
 /// Phase 2: one sample of every pixel.
 pub const CAMERA: Kernel = kernel!("camera", Some("sample_pixels"));
+/// One sample of every texel of a lightmap.
+pub const BAKE: Kernel = kernel!("bake", Some("sample_texels"));
 /// Between the phases: fixed-point flux to irradiance.
 pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
 /// Shows the film on a texture: `cover_target` and `show_pixel`.
@@ -48,7 +50,7 @@ pub const INTERSECT: Kernel = kernel!("intersect", Some("intersect_rays"));
 pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
 
 /// Every kernel.
-pub const KERNELS: [Kernel; 6] = [PHOTONS, CAMERA, RESOLVE, DISPLAY, INTERSECT, LOOP_CHECK];
+pub const KERNELS: [Kernel; 7] = [PHOTONS, CAMERA, BAKE, RESOLVE, DISPLAY, INTERSECT, LOOP_CHECK];
 
 /// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
 pub const WORKGROUP_SIZE: u32 = 64;

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use clap::{Args as _, FromArgMatches as _, Subcommand as _};
 
 use crate::commands::{
+    bake::BakeArguments,
     completions::{CompletionsArguments, ManArguments},
     inspect::InspectArguments,
     render::RenderArguments,
@@ -24,6 +25,8 @@ Examples:
       keeps how far it is; after a crash, the same with --resume teapot.state goes on to the same picture
   diacaustic vase.glb --floor
       renders a glTF file through its own camera and by its own lights, if it has any, on a floor
+  diacaustic bake teapot.toml --size 1024
+      writes lightmaps and the scene with them as teapot.baked/scene.glb
   diacaustic inspect teapot.toml
       tells what the scene holds and what it needs on the GPU, and which GPUs there are
   source <(diacaustic completions bash)
@@ -42,6 +45,8 @@ which writes what there is; a second one ends the program at once.";
 pub enum Command {
     /// Render a scene and write its picture, energy maps and statistics; this is what happens without a command
     Render(RenderArguments),
+    /// Write the light on every receiver as a lightmap, and the scene with its light as glTF
+    Bake(BakeArguments),
     /// Tell what a scene holds, without rendering it
     Inspect(InspectArguments),
     /// Print what a shell needs to complete the command line
@@ -95,7 +100,17 @@ mod tests {
 
     #[test]
     fn bad_flags_have_exit_status_2_and_help_has_0() {
-        for bad in ["", "render", "inspect", "a.toml b.toml", "a.toml --photon 3", "a.toml --samples x", "--quiet"] {
+        for bad in [
+            "",
+            "render",
+            "inspect",
+            "bake",
+            "bake a.toml --size 9 --texels-per-metre 3",
+            "a.toml b.toml",
+            "a.toml --photon 3",
+            "a.toml --samples x",
+            "--quiet",
+        ] {
             assert_eq!(parse(bad).unwrap_err().exit_code(), 2, "{bad:?}");
         }
         let help = parse("--help").unwrap_err();

@@ -1,5 +1,6 @@
 //! The commands, each with its arguments beside it.
 
+pub mod bake;
 pub mod completions;
 pub mod inspect;
 pub mod render;

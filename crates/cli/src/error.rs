@@ -59,6 +59,12 @@ pub enum Error {
         /// The number of the signal.
         signal: u8,
     },
+    /// A bake was asked to end before it was done.
+    #[error("interrupted; no lightmaps are written")]
+    BakeInterrupted {
+        /// The number of the signal.
+        signal: u8,
+    },
     /// The system does not say when the program is asked to end.
     #[error("signals cannot be watched for: {0}")]
     Signals(#[source] std::io::Error),
@@ -83,7 +89,7 @@ impl Error {
         match self {
             Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::GltfOption { .. } => 2,
             Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } => 2,
-            Self::Interrupted { signal } => 128 + signal,
+            Self::Interrupted { signal } | Self::BakeInterrupted { signal } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
             Self::Render(_) | Self::Device(_) | Self::Output(_) | Self::Signals(_) | Self::Manual { .. } => 1,

@@ -36,6 +36,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let done = match command {
         Command::Render(arguments) => commands::render::run(&arguments),
+        Command::Bake(arguments) => commands::bake::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
         Command::Completions(arguments) => {
             commands::completions::run(&arguments);

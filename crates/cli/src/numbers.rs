@@ -14,6 +14,19 @@ pub(crate) fn parse_seed(text: &str) -> Result<u32, String> {
     parse_whole(text, 0)
 }
 
+/// The size of a map, texels.
+pub(crate) fn parse_size(text: &str) -> Result<u32, String> {
+    let size = parse_whole(text, 2)?;
+    if size <= 8192 { Ok(size) } else { Err("expected a whole number from 2 to 8192".to_owned()) }
+}
+
+/// Texels a metre.
+pub(crate) fn parse_density(text: &str) -> Result<f32, String> {
+    let expected = || "expected a number of texels greater than 0, such as 100 or 2.5".to_owned();
+    let density: f32 = text.parse().map_err(|_| expected())?;
+    if density > 0.0 && density.is_finite() { Ok(density) } else { Err(expected()) }
+}
+
 /// A whole number in decimal digits, between which underscores may stand.
 fn parse_whole(text: &str, least: u32) -> Result<u32, String> {
     let expected = || format!("expected a whole number from {least} to {}, such as 1000 or 1_000", u32::MAX);
@@ -55,6 +68,9 @@ mod tests {
             assert!(parse_frames(bad).is_err(), "{bad:?}");
         }
         assert!(parse_samples("0").unwrap_err().contains("from 1 to"));
+        assert_eq!((parse_size("512"), parse_density("2.5")), (Ok(512), Ok(2.5)));
+        assert!(["1", "8193", "x"].iter().all(|bad| parse_size(bad).is_err()));
+        assert!(["0", "-1", "nan", "inf", "x"].iter().all(|bad| parse_density(bad).is_err()));
         for bad in ["0", "-1", "nan", "inf", "1e300", "1s", ""] {
             assert!(parse_seconds(bad).is_err(), "{bad:?}");
         }

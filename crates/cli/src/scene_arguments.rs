@@ -64,11 +64,23 @@ impl SceneArguments {
         self.load_frame(None)
     }
 
+    /// Reads the scene as [`Self::load`] does, also without a camera.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn load_for_baking(&self) -> Result<LoadedScene, Error> {
+        self.load_with(None, true)
+    }
+
     /// Reads the scene as it is at a frame of its animation, or without any.
     ///
     /// # Errors
     /// As [`SceneArguments::load`], and if it has no animation.
     pub fn load_frame(&self, frame: Option<u32>) -> Result<LoadedScene, Error> {
+        self.load_with(frame, false)
+    }
+
+    fn load_with(&self, frame: Option<u32>, may_lack_camera: bool) -> Result<LoadedScene, Error> {
         let read = ReadOptions { allow_outside: self.allow_outside };
         if self.is_gltf() {
             if frame.is_some() {
@@ -98,7 +110,7 @@ impl SceneArguments {
         let mut overrides = self.overrides.clone();
         // Each frame may have a seed of its own that begins with it.
         overrides.extend(self.seed.map(|seed| Override::parse(&format!("render.seed={seed}"))).transpose()?);
-        Ok(load_scene_with(&self.scene, &SceneOptions { overrides, frame, read })?)
+        Ok(load_scene_with(&self.scene, &SceneOptions { overrides, frame, read, may_lack_camera })?)
     }
 
     /// Whether the scene is a glTF file by its name.

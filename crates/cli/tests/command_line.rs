@@ -223,8 +223,12 @@ fn statistics_hold_the_counts_and_a_closed_ledger() {
 fn energy_maps_are_finite_irradiance_of_each_receiver() {
     let workplace = Workplace::new(BALL);
     workplace.render(&["--energy-maps", "new/maps"]);
-    let names: Vec<_> = fs::read_dir(workplace.path("new/maps")).unwrap().map(|f| f.unwrap().file_name()).collect();
-    assert_eq!(names, ["floor.exr"]);
+    let files = fs::read_dir(workplace.path("new/maps")).unwrap();
+    let mut names: Vec<_> = files.map(|file| file.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["floor.exr", "floor.png"]);
+    let picture = image::open(workplace.path("new/maps/floor.png")).unwrap();
+    assert!(picture.width() > 512 && picture.height() > 2 * 512, "both sides stand in the picture, enlarged");
     let map = workplace.exr("new/maps/floor.exr");
     assert_eq!((map.width, map.height), (32, 32));
     assert_lit(&map, &["B", "G", "R", "back.B", "back.G", "back.R"]);

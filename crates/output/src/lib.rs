@@ -1,4 +1,4 @@
-//! What diacaustic writes: pictures and energy maps as OpenEXR, pictures as PNG, statistics as JSON.
+//! What diacaustic writes: pictures, energy maps and lightmaps as OpenEXR and PNG, scenes with their light as glTF, statistics as JSON.
 //!
 //! Every file is written beside its place and then moved there, so that a write that fails leaves what was there before. A
 //! symbolic link stays and its target is replaced; a device or a pipe is written directly.
@@ -18,6 +18,10 @@
 
 mod energy_maps;
 mod error;
+mod false_color;
+mod gltf;
+mod lightmaps;
+mod object_folder;
 mod open_exr;
 mod picture;
 mod png;
@@ -27,6 +31,9 @@ mod tone;
 
 pub use energy_maps::{EnergyMapFolder, Irradiance};
 pub use error::Error;
+pub use gltf::{GltfMaterial, GltfMesh, GltfPart, GltfScene, GltfSurface, LightmapNote, ShownPicture, write_glb};
+pub use lightmaps::LightmapTexels;
+pub use object_folder::ObjectFolder;
 pub use open_exr::{Channel, Values, write_exr, write_exr_with_channels};
 pub use picture::{Format, Picture, write_picture};
 pub use png::{Display, write_png};

@@ -1,6 +1,6 @@
 //! Pictures as PNG.
 
-use std::path::Path;
+use std::{io::Write as _, path::Path};
 
 use image::{ExtendedColorType, ImageEncoder as _, codecs::png::PngEncoder};
 
@@ -29,11 +29,38 @@ impl Display {
 /// # Errors
 /// If the pixels are not as many as the size says, or the file cannot be written.
 pub fn write_png(path: &Path, picture: &Picture<'_>, display: &Display) -> Result<(), Error> {
+    let bytes = encode_png(path, picture, None, display)?;
+    replace(path, |file| file.write_all(&bytes))
+}
+
+/// Writes bytes of red, green and blue as PNG.
+pub(crate) fn write_bytes(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<(), Error> {
+    replace(path, |file| PngEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb8))
+}
+
+/// The bytes of a PNG file: 8 bits a channel, sRGB, with an opacity from 0 to 1 for each pixel if it has holes. `path` is for messages.
+pub(crate) fn encode_png(
+    path: &Path,
+    picture: &Picture<'_>,
+    opacity: Option<&[f32]>,
+    display: &Display,
+) -> Result<Vec<u8>, Error> {
     picture.check_shape(path)?;
-    let bytes: Vec<u8> = picture.pixels.as_flattened().iter().map(|&channel| display.byte(channel)).collect();
-    replace(path, |file| {
-        PngEncoder::new(file).write_image(&bytes, picture.width, picture.height, ExtendedColorType::Rgb8)
-    })
+    let colors = picture.pixels.iter().map(|pixel| pixel.map(|channel| display.byte(channel)));
+    let (bytes, kind): (Vec<u8>, _) = match opacity {
+        None => (colors.flatten().collect(), ExtendedColorType::Rgb8),
+        Some(opacity) => {
+            picture.check_count(path, opacity.len())?;
+            let share = |share: f32| (share.clamp(0.0, 1.0) * 255.0).round() as u8;
+            let pixels = colors.zip(opacity).map(|([r, g, b], &a)| [r, g, b, share(a)]);
+            (pixels.flatten().collect(), ExtendedColorType::Rgba8)
+        }
+    };
+    let mut file = Vec::new();
+    PngEncoder::new(&mut file)
+        .write_image(&bytes, picture.width, picture.height, kind)
+        .map_err(|error| Error::Write { path: path.to_owned(), source: error.into() })?;
+    Ok(file)
 }
 
 #[cfg(test)]

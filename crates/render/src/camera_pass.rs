@@ -1,7 +1,7 @@
 //! Phase 2: samples of the picture.
 
 use diacaustic_scene::{LightGroups, RenderSettings, Scene};
-use diacaustic_shaders::{CAMERA, CameraParams, Sighting, TILE_SIZE};
+use diacaustic_shaders::{CAMERA, CameraParams, PathParams, Sighting, TILE_SIZE};
 
 use crate::{
     Error, Film, LayerImage,
@@ -15,9 +15,9 @@ use crate::{
     random::combine,
 };
 
-/// The bindings of `shaders/layout/camera_pass.wgsl`.
-const PARAMS: [Binding; 1] = [Binding::Uniform];
-const OUTPUTS: [Binding; 6] = [
+/// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
+const PARAMS: [Binding; 2] = [Binding::Uniform; 2];
+pub(crate) const OUTPUTS: [Binding; 6] = [
     Binding::Texels,
     Binding::ReadWrite,
     Binding::ReadWrite,
@@ -58,9 +58,11 @@ impl CameraPass {
 #[derive(Debug)]
 pub(crate) struct Samples {
     pipeline: wgpu::ComputePipeline,
-    /// The params of every sample, but for its index.
-    template: CameraParams,
-    params: wgpu::Buffer,
+    camera: CameraParams,
+    /// The params of every sample's paths, but for its index.
+    pub paths: PathParams,
+    camera_params: wgpu::Buffer,
+    path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
     layers: LayerSums,
@@ -86,15 +88,18 @@ impl Samples {
         features: Features,
     ) -> Result<Self, Error> {
         let pixels = u64::from(scene.settings.width) * u64::from(scene.settings.height);
-        let params = gpu.uniform::<CameraParams>("camera");
+        let path_params = gpu.uniform::<PathParams>("camera paths");
+        let camera_params = gpu.uniform::<CameraParams>("camera");
         let film = gpu.zeroed(FILM, 16 * (1 + pixels))?;
         let layers = LayerSums::new(gpu, &scene.output.layers, &lights.groups, pixels)?;
         Ok(Self {
             pipeline: pass.pipelines.get(gpu, features),
-            template: template(scene, lights),
-            params_group: gpu.bind(&pass.params_layout, &[&params]),
+            camera: camera_of(scene),
+            paths: paths_of(scene, lights),
+            params_group: gpu.bind(&pass.params_layout, &[&path_params, &camera_params]),
             outputs_group: None,
-            params,
+            path_params,
+            camera_params,
             film,
             layers,
         })
@@ -103,7 +108,8 @@ impl Samples {
     /// Lets samples read these maps from now on.
     pub fn show(&mut self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> Result<(), Error> {
         let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        self.outputs_group = Some(outputs_group(gpu, pass, maps, &self.film, &self.layers, &no_sightings));
+        self.outputs_group =
+            Some(outputs_group(gpu, &pass.outputs_layout, maps, &self.film, &self.layers, &no_sightings));
         Ok(())
     }
 
@@ -121,20 +127,19 @@ impl Samples {
             let side = pixels.div_ceil(PIXELS_PER_SIGHTING).next_multiple_of(TILE_SIZE);
             side.clamp(*SIGHTINGS_SIDES.start(), *SIGHTINGS_SIDES.end())
         });
-        let params = CameraParams {
-            width,
-            height,
+        let camera = CameraParams { width, height, ..self.camera };
+        let seen_paths = PathParams {
             max_bounces: settings.max_bounces.min(1),
             seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
-            ..self.template
+            ..self.paths
         };
         let paths = u64::from(width * height);
         let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
         let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
         let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
-        let outputs = outputs_group(gpu, pass, empty, &film, &no_layers, &sightings);
+        let outputs = outputs_group(gpu, &pass.outputs_layout, empty, &film, &no_layers, &sightings);
         let pipeline = pass.pipelines.get(gpu, features.with_sightings());
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        self.write_params(gpu, &camera, &seen_paths);
         let groups = [width, height].map(|side| side / TILE_SIZE);
         gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], groups);
         let pixels = f64::from(settings.width) * f64::from(settings.height) / paths as f64;
@@ -149,7 +154,8 @@ impl Samples {
 
     /// Adds what samples depend on beside the scene: the view and how it is sampled.
     pub fn add_to(&self, fingerprint: &mut Fingerprint) {
-        fingerprint.digest("the camera and its settings", &[self.template]);
+        fingerprint.digest("the camera", &[self.camera]);
+        fingerprint.digest("the camera's settings", &[self.paths]);
     }
 
     /// Bytes on the device.
@@ -160,17 +166,22 @@ impl Samples {
     /// Submits one sample of every pixel.
     pub fn add(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, sample_index: u32) {
         let Some(outputs) = &self.outputs_group else { return };
-        let params = CameraParams { sample_index, ..self.template };
-        gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+        self.write_params(gpu, &self.camera, &PathParams { sample_index, ..self.paths });
         let groups = [scene_group, &self.params_group, outputs];
-        let tiles = [params.width.div_ceil(TILE_SIZE), params.height.div_ceil(TILE_SIZE)];
+        let tiles = [self.camera.width.div_ceil(TILE_SIZE), self.camera.height.div_ceil(TILE_SIZE)];
         gpu.dispatch(&self.pipeline, &groups, tiles);
+    }
+
+    /// Sets the params of the dispatches that follow.
+    fn write_params(&self, gpu: &Gpu, camera: &CameraParams, paths: &PathParams) {
+        gpu.queue.write_buffer(&self.camera_params, 0, bytemuck::bytes_of(camera));
+        gpu.queue.write_buffer(&self.path_params, 0, bytemuck::bytes_of(paths));
     }
 
     /// Reads the picture. Blocks.
     pub fn read(&self, gpu: &Gpu, samples: u32) -> Result<Film, Error> {
         let sums = self.sums(gpu)?;
-        let (width, height) = (self.template.width, self.template.height);
+        let (width, height) = (self.camera.width, self.camera.height);
         let mean = |[r, g, b, count]: [f32; 4]| [r, g, b].map(|sum| sum / count.max(1.0));
         Ok(Film { width, height, samples, radiance: sums.into_iter().map(mean).collect() })
     }
@@ -184,7 +195,7 @@ impl Samples {
     /// For each pixel the sum of its samples and their number. Blocks.
     fn sums(&self, gpu: &Gpu) -> Result<Vec<[f32; 4]>, Error> {
         self.rays(gpu)?;
-        gpu.read(&self.film, 1..1 + u64::from(self.template.width) * u64::from(self.template.height))
+        gpu.read(&self.film, 1..1 + u64::from(self.camera.width) * u64::from(self.camera.height))
     }
 
     /// Reads the number of rays traced. Blocks.
@@ -197,9 +208,10 @@ impl Samples {
     }
 }
 
-fn outputs_group(
+/// Binds what paths read of the maps and accumulate in.
+pub(crate) fn outputs_group(
     gpu: &Gpu,
-    pass: &CameraPass,
+    layout: &wgpu::BindGroupLayout,
     maps: &EnergyMaps,
     film: &wgpu::Buffer,
     layers: &LayerSums,
@@ -208,23 +220,17 @@ fn outputs_group(
     let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
     let buffers =
         [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
-    gpu.bind_resources(&pass.outputs_layout, [irradiance].into_iter().chain(buffers).collect())
+    gpu.bind_resources(layout, [irradiance].into_iter().chain(buffers).collect())
 }
 
-fn template(scene: &Scene, lights: &Lights) -> CameraParams {
+fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {
     let camera = &scene.camera;
     let settings = &scene.settings;
-    let [right, up, forward] = camera.axes();
+    let [_, _, forward] = camera.axes();
     let media = media_keys(scene, camera.position);
     let index = medium_index(scene, media[0]);
-    let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
-    let half_width = half_height * settings.width as f32 / settings.height as f32;
-    CameraParams {
+    PathParams {
         position: camera.position.into(),
-        aperture_radius: camera.aperture_radius,
-        half_right: (half_width * right).into(),
-        focus_distance: camera.focus_distance,
-        half_up: (half_height * up).into(),
         sample_index: 0,
         forward: forward.into(),
         seed: combine(settings.seed, SEED_STREAM),
@@ -232,15 +238,29 @@ fn template(scene: &Scene, lights: &Lights) -> CameraParams {
         max_depth: settings.max_depth,
         ambient: scene.ambient.into(),
         light_count: lights.records.len() as u32,
-        lens_right: right.into(),
-        width: settings.width,
-        lens_up: up.into(),
-        height: settings.height,
         media,
         sphere_count: lights.sphere_count as u32,
         first_sky_light: lights.first_sky as u32,
         max_bounces: settings.max_bounces,
         exposure: 1.0 / (index * index),
+    }
+}
+
+fn camera_of(scene: &Scene) -> CameraParams {
+    let camera = &scene.camera;
+    let settings = &scene.settings;
+    let [right, up, _] = camera.axes();
+    let half_height = (0.5 * camera.vertical_fov.to_radians()).tan();
+    let half_width = half_height * settings.width as f32 / settings.height as f32;
+    CameraParams {
+        half_right: (half_width * right).into(),
+        aperture_radius: camera.aperture_radius,
+        half_up: (half_height * up).into(),
+        focus_distance: camera.focus_distance,
+        lens_right: right.into(),
+        width: settings.width,
+        lens_up: up.into(),
+        height: settings.height,
         filter_inverse_cdf: filter_inverse_cdf(settings.filter),
     }
 }

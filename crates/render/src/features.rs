@@ -88,6 +88,11 @@ impl Features {
         Self { sightings: true, light_layers: false, data_layers: false, light_groups: 0, ..self }
     }
 
+    /// The same for paths that begin at a lightmap's texels.
+    pub fn for_baking(self) -> Self {
+        Self { sightings: false, light_layers: true, data_layers: false, ..self }
+    }
+
     /// The values of the kernel's override constants.
     fn constants(self, kernel: Kernel) -> Vec<(&'static str, f64)> {
         let all = [

@@ -74,6 +74,7 @@ pub use diacaustic_surface::{MapLayout, MapSquare, MapTile, MapTiles};
 pub use {glam, wgpu};
 
 mod aim;
+mod bake;
 mod camera_pass;
 mod display_pass;
 mod energy_map;
@@ -107,6 +108,7 @@ mod tile_choice;
 mod vertex_color_records;
 
 pub use aim::Emission;
+pub use bake::{BakeOptions, Lightmap, SurfacePlace, base_reflectance};
 pub use display_pass::RenderParams;
 pub use energy_map::EnergyMap;
 pub use error::Error;

@@ -351,7 +351,12 @@ pub(crate) fn medium_index(scene: &Scene, key: u32) -> f32 {
 
 /// The keys of the four highest dielectrics around a point, the highest first.
 pub(crate) fn media_keys(scene: &Scene, point: Vec3) -> [u32; 4] {
-    let mut keys: Vec<u32> = scene.media_at(point).into_iter().map(|material| medium_key(scene, material)).collect();
+    keys_of_media(scene, scene.media_at(point))
+}
+
+/// The keys of the four highest of some dielectrics, the highest first.
+pub(crate) fn keys_of_media(scene: &Scene, media: Vec<usize>) -> [u32; 4] {
+    let mut keys: Vec<u32> = media.into_iter().map(|material| medium_key(scene, material)).collect();
     keys.sort_unstable_by(|a, b| b.cmp(a));
     keys.resize(4, 0);
     [keys[0], keys[1], keys[2], keys[3]]

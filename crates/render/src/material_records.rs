@@ -124,7 +124,7 @@ fn width(roughness: f32) -> f32 {
 }
 
 /// ρ* of a base of albedo ρ under a coat: ρ/(n²(1 − ρF_in)).
-fn under_coat(albedo: Vec3, ior: f32) -> Vec3 {
+pub(crate) fn under_coat(albedo: Vec3, ior: f32) -> Vec3 {
     let inside = reflectance_from_within(f64::from(ior)) as f32;
     albedo / (ior * ior * (Vec3::ONE - albedo * inside))
 }
@@ -135,7 +135,7 @@ fn reflectance_from_within(n: f64) -> f64 {
 }
 
 /// 2∫F(μ)μ dμ over 0 … 1: the reflectance from outside for light from everywhere.
-fn mean_reflectance(n: f64) -> f64 {
+pub(crate) fn mean_reflectance(n: f64) -> f64 {
     let step = 1.0 / FRESNEL_STEPS as f64;
     (0..FRESNEL_STEPS)
         .map(|i| {
@@ -146,7 +146,7 @@ fn mean_reflectance(n: f64) -> f64 {
 }
 
 /// Fresnel reflectance from outside at cosine `mu`.
-fn reflectance(mu: f64, n: f64) -> f64 {
+pub(crate) fn reflectance(mu: f64, n: f64) -> f64 {
     let cos_t = (1.0 - (1.0 - mu * mu) / (n * n)).sqrt();
     let r_s = (mu - n * cos_t) / (mu + n * cos_t);
     let r_p = (n * mu - cos_t) / (n * mu + cos_t);

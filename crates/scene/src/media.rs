@@ -13,13 +13,12 @@ impl Scene {
     pub fn media_at(&self, point: Vec3) -> Vec<usize> {
         let mut media = Vec::new();
         for object in &self.objects {
-            let Some(material) = object.materials.iter().copied().find(|m| self.is_dielectric(*m)) else { continue };
             let place = object.world_from_object.inverse().transform_point3(point);
             // Most points lie outside most objects, which the mesh's bounds tell without its boundary.
             if !is_within_bounds(&object.mesh, place) {
                 continue;
             }
-            let Some(boundary) = self.dielectric_boundary(object) else { continue };
+            let Some((material, boundary)) = self.dielectric_boundary(object) else { continue };
             let turns = boundary.winding_number(place).abs().round() as usize;
             media.extend(std::iter::repeat_n(material, turns));
         }
@@ -38,9 +37,13 @@ impl Scene {
         Some((0..self.materials.len()).filter_map(precedence).filter(|other| *other < own).count() as u32)
     }
 
-    /// The surface that bounds an object's dielectric, if it has one: its dielectric triangles if they close by
-    /// themselves or with the rest do not, else all of its triangles.
-    pub(crate) fn dielectric_boundary(&self, object: &Object) -> Option<Mesh> {
+    /// An object's dielectric, if it has one, as an index into [`Scene::materials`], and the surface that bounds it, object frame: its
+    /// dielectric triangles if they close by themselves or with the rest do not, else all of its triangles.
+    ///
+    /// # Panics
+    /// If an index of the object is out of range; a validated scene has none that is.
+    pub fn dielectric_boundary(&self, object: &Object) -> Option<(usize, Mesh)> {
+        let material = object.materials.iter().copied().find(|m| self.is_dielectric(*m))?;
         let all = 0..object.mesh.triangles.len();
         let part: Vec<_> =
             all.filter(|t| self.is_dielectric(object.material_of(*t))).map(|t| object.mesh.triangles[t]).collect();
@@ -50,9 +53,9 @@ impl Scene {
         let surface = |triangles| Mesh { positions: object.mesh.positions.clone(), triangles, ..Mesh::default() };
         let part = surface(part);
         if part.open_edges() == 0 || object.mesh.open_edges() > 0 {
-            return Some(part);
+            return Some((material, part));
         }
-        Some(surface(object.mesh.triangles.clone()))
+        Some((material, surface(object.mesh.triangles.clone())))
     }
 
     fn is_dielectric(&self, material: usize) -> bool {

@@ -23,7 +23,7 @@ use self::{
 };
 use crate::{
     Camera, Error, Layer, Location, OutputSettings, PixelFilter, ReadOptions, RenderSettings, Scene, Subject,
-    ToneCurve, Warning,
+    ToneCurve, Warning, studio::framing_camera,
 };
 
 /// A scene from a file, valid, with what is odd about it.
@@ -44,6 +44,8 @@ pub struct SceneOptions {
     pub frame: Option<u32>,
     /// What may be read. It concerns what glTF and OBJ files name; the scene file itself may name files anywhere.
     pub read: ReadOptions,
+    /// Whether the file may leave its camera out: one that sees every object then stands for it.
+    pub may_lack_camera: bool,
 }
 
 /// Reads a scene from a TOML file; the paths in it are relative to its folder.
@@ -97,7 +99,7 @@ pub fn parse_scene_with(
         (None, None) => {}
     }
     let document = Document::parse(text, file_name, &overrides)?;
-    let sections = Sections::split(document.root())?;
+    let sections = Sections::split(document.root(), options.may_lack_camera)?;
     let ReadScene { mut scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
     scene.settings.seed = scene.settings.seed.wrapping_add(seed_offset);
     warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
@@ -115,7 +117,8 @@ struct ReadScene {
 /// The tables of a scene file.
 struct Sections<'d> {
     root: Table<'d>,
-    camera: Table<'d>,
+    /// None only if the scene may do without.
+    camera: Option<Table<'d>>,
     render: Option<Table<'d>>,
     output: Option<Table<'d>>,
     materials: Vec<(String, Table<'d>)>,
@@ -124,7 +127,7 @@ struct Sections<'d> {
 }
 
 impl<'d> Sections<'d> {
-    fn split(root: Table<'d>) -> Result<Self, Error> {
+    fn split(root: Table<'d>, may_lack_camera: bool) -> Result<Self, Error> {
         root.allow_only(&[
             "background",
             "ambient",
@@ -138,8 +141,11 @@ impl<'d> Sections<'d> {
         ])?;
         let optional =
             |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
+        if !may_lack_camera {
+            root.require("camera", "a table: [camera]")?;
+        }
         Ok(Self {
-            camera: root.require("camera", "a table: [camera]")?.table("[camera]".to_owned(), "a table: [camera]")?,
+            camera: optional("camera", "a table: [camera]")?,
             render: optional("render", "a table: [render]")?,
             output: optional("output", "a table: [output]")?,
             materials: named_tables(&root, "materials", "tables: [materials.a_name]")?,
@@ -152,20 +158,16 @@ impl<'d> Sections<'d> {
     fn read(&self, base_dir: &Path, options: ReadOptions) -> Result<ReadScene, Error> {
         let color = |key| self.root.get(key).map_or(Ok(Vec3::ZERO), |entry| entry.color());
         let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
-        let mut scene = Scene {
-            background: color("background")?,
-            ambient: color("ambient")?,
-            camera: read_camera(&self.camera)?,
-            settings: self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default(),
-            output: self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default(),
-            lights: LightReader::new(base_dir).read_all(&self.lights)?,
-            materials: Vec::new(),
-            objects: Vec::new(),
-        };
+        let (background, ambient) = (color("background")?, color("ambient")?);
+        let camera = self.camera.as_ref().map(read_camera).transpose()?;
+        let settings = self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default();
+        let output = self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default();
+        let lights = LightReader::new(base_dir).read_all(&self.lights)?;
         let mut reader = ObjectReader::new(base_dir, options, materials);
-        let (tables_of_objects, objects) = reader.read_all(&self.objects)?.into_iter().unzip();
-        scene.objects = objects;
-        scene.materials = reader.materials;
+        let (tables_of_objects, objects): (_, Vec<_>) = reader.read_all(&self.objects)?.into_iter().unzip();
+        let camera = camera.unwrap_or_else(|| framing_camera(&objects));
+        let materials = reader.materials;
+        let scene = Scene { background, ambient, camera, settings, output, lights, materials, objects };
         Ok(ReadScene { scene, warnings: reader.warnings, tables_of_objects })
     }
 
@@ -179,7 +181,7 @@ impl<'d> Sections<'d> {
 
     fn location_of(&self, subject: &Subject, key: &str, tables_of_objects: &[usize]) -> Location {
         let table = match subject {
-            Subject::Camera => Some(&self.camera),
+            Subject::Camera => self.camera.as_ref(),
             Subject::Render => self.render.as_ref(),
             Subject::Output => self.output.as_ref(),
             Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),

@@ -68,10 +68,12 @@ pub fn load_gltf_scene(path: &Path, options: &StudioOptions) -> Result<LoadedSce
 }
 
 fn compose(file: GltfFile, options: &StudioOptions) -> Scene {
-    let bounds = Bounds::of(&file);
+    let positions: Vec<Vec3> =
+        file.objects.iter().flat_map(|object| world_positions(&object.mesh, object.world_from_object)).collect();
+    let bounds = Bounds::of(&positions);
     let GltfCamera { camera, aspect_ratio } = match file.cameras.first() {
         Some(found) => GltfCamera { camera: focused(&found.camera, &bounds), aspect_ratio: found.aspect_ratio },
-        None => bounds.framing_camera(&file, if options.floor { MARGIN_WITH_FLOOR } else { MARGIN }),
+        None => bounds.framing_camera(&positions, if options.floor { MARGIN_WITH_FLOOR } else { MARGIN }),
     };
     let has_lights = file.lights.iter().any(|light| !light.kind.is_dark());
     let mut scene = Scene {
@@ -160,11 +162,19 @@ impl Names {
     }
 }
 
-/// Every vertex, world frame.
-fn world_positions(file: &GltfFile) -> impl Iterator<Item = Vec3> + '_ {
-    file.objects.iter().flat_map(|object| {
-        object.mesh.positions.iter().map(|position| object.world_from_object.transform_point3(*position))
-    })
+/// A camera that sees every object; around the origin without any.
+pub(crate) fn framing_camera(objects: &[Object]) -> Camera {
+    let mut positions: Vec<Vec3> =
+        objects.iter().flat_map(|object| world_positions(&object.mesh, object.world_from_object)).collect();
+    if positions.is_empty() {
+        positions = vec![Vec3::NEG_ONE, Vec3::ONE];
+    }
+    Bounds::of(&positions).framing_camera(&positions, MARGIN).camera
+}
+
+/// Every vertex of a mesh, world frame.
+fn world_positions(mesh: &Mesh, world_from_object: Affine3A) -> impl Iterator<Item = Vec3> + '_ {
+    mesh.positions.iter().map(move |position| world_from_object.transform_point3(*position))
 }
 
 /// The box around everything, world frame, metres.
@@ -174,11 +184,11 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn of(file: &GltfFile) -> Self {
+    fn of(positions: &[Vec3]) -> Self {
         let mut bounds = Self { lowest: Vec3::INFINITY, highest: Vec3::NEG_INFINITY };
-        for position in world_positions(file) {
-            bounds.lowest = bounds.lowest.min(position);
-            bounds.highest = bounds.highest.max(position);
+        for position in positions {
+            bounds.lowest = bounds.lowest.min(*position);
+            bounds.highest = bounds.highest.max(*position);
         }
         bounds
     }
@@ -193,7 +203,7 @@ impl Bounds {
     }
 
     /// A camera that sees everything, in a picture that is `margin` times as wide as that needs.
-    fn framing_camera(&self, file: &GltfFile, margin: f32) -> GltfCamera {
+    fn framing_camera(&self, positions: &[Vec3], margin: f32) -> GltfCamera {
         let towards = TOWARDS_CAMERA.normalize();
         let camera = |look_at: Vec3, distance: f32| Camera {
             position: look_at + distance * towards,
@@ -208,7 +218,7 @@ impl Bounds {
             let offset = position - self.middle();
             Vec3::new(offset.dot(right), offset.dot(up), offset.dot(forward))
         };
-        let places = || world_positions(file).map(in_view);
+        let places = || positions.iter().map(|position| in_view(*position));
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         let (low, high) = places().fold(start, |(low, high), place| (low.min(place), high.max(place)));
         let (centre, extent) = (0.5 * (low + high), high - low);

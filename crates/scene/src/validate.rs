@@ -112,7 +112,7 @@ impl Scene {
         if count > 0 {
             warnings.push(Warning::DegenerateTriangles { object: name(), count });
         }
-        let Some(boundary) = self.dielectric_boundary(object) else { return };
+        let Some((_, boundary)) = self.dielectric_boundary(object) else { return };
         let open_edges = boundary.open_edges();
         if open_edges > 0 {
             warnings.push(Warning::OpenDielectric { object: name(), open_edges });

@@ -11,7 +11,7 @@ use diacaustic::{
 };
 
 /// Width and height of the picture, pixels.
-pub const SIZE: u32 = 384;
+pub const SIZE: u32 = 256;
 
 /// What the sliders set.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use crate::ball::{Controls, SIZE, ball};
 
 /// Photons of a picture, and how many come between two frames.
 const PHOTONS: u64 = 400_000;
-const PHOTONS_A_FRAME: u64 = 100_000;
+const PHOTONS_A_FRAME: u64 = 50_000;
 /// Samples of each pixel of a finished picture.
 const SAMPLES: u32 = 64;
 

@@ -1,6 +1,7 @@
 //! `diacaustic render`: from the scene to a picture.
 
 mod arguments;
+mod chart_borders;
 mod checkpoint;
 mod outputs;
 mod pictures;
@@ -18,6 +19,7 @@ use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, wri
 
 pub use self::arguments::RenderArguments;
 use self::{
+    chart_borders::chart_borders,
     checkpoint::{Checkpoints, resume},
     outputs::Outputs,
     pictures::{NO_LAYERS, can_hold_layers, write_pictures},
@@ -131,8 +133,10 @@ fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder, frame: Opt
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
         let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
+        let borders = session.renderer.map_layout(index)?.map_or_else(Vec::new, chart_borders);
+        let irradiance = Irradiance { width: map.width, height: map.height, texels: &texels, chart_borders: &borders };
         let name = object.name.clone() + &frame.map(|frame| format!(".{frame:04}")).unwrap_or_default();
-        folder.write(&name, &Irradiance { width: map.width, height: map.height, texels: &texels })?;
+        folder.write(&name, &irradiance)?;
         count += 1;
     }
     Ok(count)
@@ -152,7 +156,8 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
     Ok(write_statistics(path, &report.statistics())?)
 }
 
-fn display(output: &OutputSettings) -> Display {
+/// How the scene's pictures are exposed.
+pub(crate) fn display(output: &OutputSettings) -> Display {
     let tone = match output.tone {
         ToneCurve::Plain => Tone::Plain,
         ToneCurve::Filmic => Tone::Filmic,

@@ -1,0 +1,90 @@
+// A path of light, followed from where it is seen toward the lights.
+
+import package::film::layers::{add_to_group, add_to_layer};
+import package::layout::path_pass::{path_params, Sighting, LAYER_EMISSION, LAYER_INDIRECT};
+import package::medium::media::medium_ior;
+import package::spectrum::wavelength::{at_wavelength, draw_wavelength, Wavelength};
+
+/// First slot of the padded numbers for microfacet normals; choices have those below.
+const SLOT_MICROFACET: u32 = 4096u;
+/// First slot of the padded numbers of vertices that gather light, eight each.
+const SLOT_VERTEX: u32 = 8192u;
+
+/// A path from a lens, or from a surface that is looked at, into the scene.
+struct Path {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    /// Radiance that arrives in the picture for radiance 1 along the ray.
+    beta: vec3<f32>,
+    /// Radiance gathered, W/(m² sr).
+    radiance: vec3<f32>,
+    /// The media that the ray is in.
+    media: vec4<u32>,
+    /// Casters met.
+    depth: u32,
+    /// Receivers met.
+    bounces: u32,
+    /// Vertices that have gathered light.
+    gathered: u32,
+    /// Choices between lobes made.
+    choices: u32,
+    /// The number of the first choice, in scenes with dispersion that of the wavelength.
+    fifth_number: f32,
+    wavelength: Wavelength,
+    /// Density with which the last surface drew the direction, 1/sr, where next-event estimation could have found the same light; 0 where not.
+    lobe_pdf: f32,
+    /// Whether what lights send along the ray, straight or through casters, is already counted: by next-event estimation or the map of
+    /// the last receiver.
+    lights_counted: bool,
+    /// Whether the path goes on along its ray.
+    goes_on: bool,
+    /// A light's visibility to ask for before: unit direction, distance, and what it brings if nothing blocks it.
+    shadow_pending: bool,
+    shadow_origin: vec3<f32>,
+    shadow_direction: vec3<f32>,
+    shadow_length: f32,
+    unblocked: vec3<f32>,
+    /// Of this, what the first casters on the path send to the camera; the layer of the rest.
+    unblocked_emission: vec3<f32>,
+    shadow_layer: u32,
+    /// The light's group.
+    shadow_group: u32,
+    /// The pixel, row by row from the top left.
+    pixel: u32,
+    /// The layer of light that the path meets.
+    layer: u32,
+    /// Whether the path has met a surface that is kept in the layers.
+    has_first_surface: bool,
+    /// Seed of the pixel's random numbers.
+    seed: u32,
+    /// What it has seen of the energy maps, but for the radiance.
+    sighting: Sighting,
+}
+
+/// Gives a path one wavelength.
+fn take_wavelength(path: ptr<function, Path>) {
+    let drawn = draw_wavelength((*path).fifth_number);
+    (*path).wavelength = drawn.wavelength;
+    // The exposure has divided by the square of the stated index where the camera stands.
+    let stated = medium_ior(path_params.media, Wavelength(-1.0, vec3<f32>(0.0)));
+    let index = stated / medium_ior(path_params.media, drawn.wavelength);
+    (*path).beta = at_wavelength((*path).beta, drawn.wavelength) * drawn.weight * (index * index);
+}
+
+/// The layer of what the path gathers at a receiver: `first` at the first one.
+fn layer_at_receiver(path: ptr<function, Path>, first: u32) -> u32 {
+    return select(LAYER_INDIRECT, first, (*path).layer == LAYER_EMISSION);
+}
+
+/// Lets a path pass a caster: what it meets beyond is seen through casters, or came by more than a receiver.
+fn pass_caster(path: ptr<function, Path>) {
+    (*path).layer = layer_at_receiver(path, LAYER_EMISSION);
+    (*path).depth += 1u;
+}
+
+/// Adds radiance that a path meets, of lights of a group.
+fn add_light(path: ptr<function, Path>, group: u32, radiance: vec3<f32>) {
+    (*path).radiance += radiance;
+    add_to_layer((*path).pixel, (*path).layer, radiance);
+    add_to_group((*path).pixel, group, radiance);
+}
