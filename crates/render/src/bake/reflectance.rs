@@ -20,10 +20,10 @@ pub fn base_reflectance(material: &Material, uv: Vec2) -> Vec3 {
             let passes = (1.0 - reflectance(1.0, n)) * (1.0 - mean_reflectance(n));
             passes as f32 * under_coat(albedo * picture, ior)
         }
-        MaterialKind::MetallicRoughness { base_color, reflectance, metallic, .. } => {
+        MaterialKind::MetallicRoughness { base_color, reflectance: normal, metallic, .. } => {
             let metallic = metallic * textures.metallic.as_ref().map_or(1.0, |texture| texture.number_at(uv));
             let color = base_color * picture;
-            (1.0 - metallic) * color * (Vec3::ONE - reflectance.lerp(color, metallic))
+            (1.0 - metallic) * color * (Vec3::ONE - normal.lerp(color, metallic))
         }
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }
