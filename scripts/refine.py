@@ -4,9 +4,9 @@
     scripts/refine.py [--sizes 64,128,...] [--photons 1e5,...] [--plot FILE.png]      (pip install numpy OpenEXR matplotlib)
 
 Needs target/release/diacaustic and, beside the repository, the folder shared/reference with the meshes and pictures of an independent tracer;
-without them it says so and ends with status 0. Each map is read at the floor points of the pixels that the reference calls the caustic, with 8 x 8 points
-a pixel, so that no camera noise is measured, and added to the direct light of one picture of 64 samples. The error is that of the reference's
-compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
+without them it says so and ends with status 0. Each map is read at the floor points of the brighter half of the caustic: pixels of at least the mean
+of those that the reference calls the caustic, which no direct light reaches, and which indirect light makes brighter by a per cent at most. There are 8 x 8
+points a pixel, so that no camera noise is measured. The error is that of the reference's compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
 """
 import argparse
 import pathlib
@@ -19,6 +19,8 @@ REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
 REFERENCE = REPOSITORY.parent / "shared" / "reference"
 PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
 POINTS = 8
+# Direct light that a pixel of the umbra may have, against the mean of the caustic.
+UMBRA = 0.001
 
 
 def channel(path, name):
@@ -94,8 +96,11 @@ def errors(name, sizes, counts):
     table = {}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        run(path, "map_size = 64\nmax_bounces = 0", folder, 1000, 64, '["direct"]')
-        direct = channel(folder / "picture.exr", "direct.G")[mask]
+        run(path, "map_size = 64\nmax_bounces = 0", folder, 1000, 32, '["direct"]')
+        direct = channel(folder / "picture.exr", "direct.G")
+        mean = reference[mask].mean()
+        mask &= (direct <= UMBRA * mean) & (reference >= mean)
+        direct = direct[mask]
         u, v = (a.reshape(mask.shape[0], POINTS, mask.shape[1], POINTS).swapaxes(1, 2)[mask] for a in floor_points(scene))
         r = reference[mask]
         for size in sizes:
@@ -133,8 +138,8 @@ def plot(tables, sizes, counts, path):
 def main():
     numbers = lambda text: [int(float(number)) for number in text.split(",")]
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sizes", type=numbers, default=[64, 128, 256, 512, 1024, 2048, 4096])
-    parser.add_argument("--photons", type=numbers, default=[100_000, 1_000_000, 10_000_000])
+    parser.add_argument("--sizes", type=numbers, default=[64, 128, 256, 512, 1024, 2048])
+    parser.add_argument("--photons", type=numbers, default=[100_000, 1_000_000])
     parser.add_argument("--plot")
     arguments = parser.parse_args()
     missing = [path for path in (PROGRAM, REFERENCE / "ball.exr") if not path.exists()]

@@ -9,7 +9,7 @@ import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::{footprint, map_layer, map_place, tile_at};
 import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
-import package::layout::features::{has_dispersion, has_footprints, has_guide, photon_light_kind};
+import package::layout::features::{has_dispersion, has_footprints, has_guide, paper_refraction, photon_light_kind, PAPER_NONE};
 import package::layout::records::{load_corners, load_triangle};
 import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
@@ -22,6 +22,8 @@ import package::layout::scene::{
     LIGHT_DISTANT, LIGHT_ENVIRONMENT, MATERIAL_THIN_WALLED, Triangle,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
+import package::paper::deposit::weights_by_equation_2;
+import package::paper::emission::emit_by_equation_1;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::frame;
 import package::spectrum::wavelength::{at_wavelength, draw_wavelength, first_wavelength, Wavelength};
@@ -251,7 +253,12 @@ fn start_photon(place: u32) -> Photon {
     if is_pilot() {
         landings[index] = Landing(NONE, 0.0, 0.0, 0.0, guided.cells.x, guided.cells.y);
     }
-    let emission = emit(guided.numbers);
+    var emission: Emission;
+    if paper_refraction != PAPER_NONE {
+        emission = emit_by_equation_1(index);
+    } else {
+        emission = emit(guided.numbers);
+    }
     let wavelength = first_wavelength();
     let beta = at_wavelength(emission.flux * (photon_params.flux_factor / guided.density), wavelength);
     let units = to_units(beta);
@@ -285,12 +292,16 @@ fn take_wavelength(photon: ptr<function, Photon>) {
 /// Adds a photon's flux to the four texels around a hit; their integers sum to its units exactly.
 fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
     let place = footprint(hit, object, front);
+    var weights = place.weights;
+    if paper_refraction != PAPER_NONE {
+        weights = weights_by_equation_2(place.weights);
+    }
     let units = (*photon).units;
     var rest = units;
     for (var k = 0u; k < 4u; k++) {
         var share = rest;
         if k < 3u {
-            share = vec3<i32>(round(vec3<f32>(units) * place.weights[k]));
+            share = vec3<i32>(round(vec3<f32>(units) * weights[k]));
         }
         rest -= share;
         add_to_texel(place.texels[k], share);
@@ -320,8 +331,10 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
     if (*photon).depth == 0u {
         accounts[LEDGER_DIRECT] += (*photon).units;
     } else {
-        let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
-        change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
+        if paper_refraction == PAPER_NONE {
+            let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
+            change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
+        }
         accounts[LEDGER_DEPOSITED] += (*photon).units;
         if is_pilot() {
             note_landing(photon, hit, triangle.object, point.front);
@@ -398,7 +411,9 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let v = padded_2((*photon).index, photon_params.seed, SLOT_MICROFACET + 2u * choice);
     let event = scatter_specular(material, d, point.n_g, point.n_s, sides, u, v);
     change_flux(photon, event.weight / gloss_chance, LEDGER_ABSORBED);
-    change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
+    if paper_refraction == PAPER_NONE {
+        change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
+    }
     if has_footprints {
         (*photon).has_footprint = (*photon).has_footprint && material.gloss <= 0.0;
         if !(event.transmitted && kind == MATERIAL_THIN_WALLED) {

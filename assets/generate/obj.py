@@ -1,4 +1,4 @@
-"""Wavefront OBJ files: v, vn and f only, rounded so that the files stay small."""
+"""Wavefront OBJ files: v, vn, s off and f only, rounded so that the files stay small."""
 
 import numpy as np
 
@@ -29,6 +29,8 @@ def write(path, mesh, title):
         text += lines("vn", normals, NORMAL_DECIMALS)
         normal_corners = (normal_at[mesh.normal_triangles] + 1).astype(str)
         corners = np.strings.add(np.strings.add(corners, "//"), normal_corners)
+    else:
+        text.append("s off")
     text += ["f " + " ".join(row) for row in corners]
     path.write_text("\n".join(text) + "\n", encoding="ascii")
 

@@ -4,13 +4,11 @@
 //! SIZE × SIZE / 2 texels, in texels a second. `set_scene`: everything, until the device has it, in triangles a second.
 //!
 //! ```text
-//! cargo bench -p diacaustic-benches --bench scene_setup
+//! cargo bench --workspace --bench scene_setup
 //! ```
 
-use std::time::Duration;
-
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use diacaustic_benches::{floor, two_teapots};
+use diacaustic_benches::{brief, floor, two_teapots};
 use diacaustic_surface::{Bvh, MapLayout, MapTiles, texel_areas, world_triangles};
 use diacaustic_tests::renderer;
 
@@ -41,10 +39,6 @@ fn scene_setup(criterion: &mut Criterion) {
             renderer.wait().unwrap();
         });
     });
-}
-
-fn brief() -> Criterion {
-    Criterion::default().sample_size(10).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5))
 }
 
 criterion_group! { name = benches; config = brief(); targets = scene_setup }

@@ -5,10 +5,8 @@
 //! pass is one dispatch of `Renderer::trace_rays` over rays that lie on the device, and the wait for it.
 //!
 //! ```text
-//! cargo bench -p diacaustic-benches --bench traversal
+//! cargo bench --workspace --bench traversal
 //! ```
-
-use std::time::Duration;
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use diacaustic::{
@@ -16,8 +14,7 @@ use diacaustic::{
     glam::{UVec2, Vec2, Vec3},
     scene::{Camera, LightKind, Scene},
 };
-use diacaustic_benches::two_teapots;
-use diacaustic_reference::random::{hash, unit};
+use diacaustic_benches::{brief, even_direction, two_teapots};
 use diacaustic_tests::renderer;
 
 const PICTURE_SIZE: u32 = 1024;
@@ -49,17 +46,12 @@ fn met(renderer: &Renderer, rays: &[Ray]) -> Vec<Vec3> {
     rays.iter().zip(hits).filter_map(|(ray, hit)| Some(ray.origin + 0.999 * hit?.t * ray.direction)).collect()
 }
 
-/// A direction even over the sphere, the same in every run.
-fn direction(number: u32) -> Vec3 {
-    let (u, v) = (unit(hash(2 * number)) as f32, unit(hash(2 * number + 1)) as f32);
-    let (height, angle) = (2.0 * u - 1.0, std::f32::consts::TAU * v);
-    let radius = (1.0 - height * height).sqrt();
-    Vec3::new(radius * angle.cos(), height, radius * angle.sin())
-}
-
 fn incoherent(points: &[Vec3]) -> Vec<Ray> {
-    let ray =
-        |(number, origin): (usize, &Vec3)| Ray { origin: *origin, direction: direction(number as u32), t_max: 1e30 };
+    let ray = |(number, origin): (usize, &Vec3)| Ray {
+        origin: *origin,
+        direction: even_direction(number as u32),
+        t_max: 1e30,
+    };
     points.iter().enumerate().map(ray).collect()
 }
 
@@ -94,10 +86,6 @@ fn traversal(criterion: &mut Criterion) {
             });
         });
     }
-}
-
-fn brief() -> Criterion {
-    Criterion::default().sample_size(10).warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5))
 }
 
 criterion_group! { name = benches; config = brief(); targets = traversal }

@@ -1,6 +1,10 @@
-//! What the benchmarks share: scenes.
+//! What the benchmarks share: scenes, rays and how long they measure.
 
-use diacaustic::scene::Scene;
+use std::time::Duration;
+
+use criterion::Criterion;
+use diacaustic::{glam::Vec3, scene::Scene};
+use diacaustic_reference::random::{hash, unit};
 use diacaustic_tests::scene;
 
 /// A glass teapot on a plaster floor of 4 m × 2 m, in a picture of 64 × 64 pixels. The map of the floor's upper side has
@@ -17,6 +21,23 @@ pub fn two_teapots(map_size: u32) -> Scene {
 /// The floor's index among the objects of a scene of this crate: the last.
 pub fn floor(scene: &Scene) -> usize {
     scene.objects.len() - 1
+}
+
+/// Short measurements: ten samples each, so that every benchmark together takes minutes.
+pub fn brief() -> Criterion {
+    Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(200))
+        .measurement_time(Duration::from_millis(1500))
+        .without_plots()
+}
+
+/// A direction even over the sphere, the same for a number in every run.
+pub fn even_direction(number: u32) -> Vec3 {
+    let (u, v) = (unit(hash(2 * number)) as f32, unit(hash(2 * number + 1)) as f32);
+    let (height, angle) = (2.0 * u - 1.0, std::f32::consts::TAU * v);
+    let radius = (1.0 - height * height).sqrt();
+    Vec3::new(radius * angle.cos(), height, radius * angle.sin())
 }
 
 fn teapots(places: &[[f32; 3]], map_size: u32) -> Scene {

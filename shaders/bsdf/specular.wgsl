@@ -2,11 +2,12 @@
 
 import package::bsdf::fresnel::{conductor_reflectance, refraction, schlick};
 import package::bsdf::microfacet::{ggx_density, masking_weight, smith_lambda, visible_normal};
-import package::layout::features::{has_conductors, has_gloss};
+import package::layout::features::{has_conductors, has_gloss, paper_refraction, PAPER_EXACT, PAPER_PRINTED};
 import package::layout::scene::{
     Material, MATERIAL_COATED, MATERIAL_CONDUCTOR, MATERIAL_DIELECTRIC, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR,
     MATERIAL_THIN_WALLED,
 };
+import package::paper::refraction::refract_by_equation_3;
 
 /// The indices on the two sides of an interface.
 struct Interface {
@@ -41,7 +42,11 @@ fn specular_reflectance(material: Material, cos_i: f32, sides: Interface) -> vec
     if kind != MATERIAL_DIELECTRIC && kind != MATERIAL_THIN_WALLED && kind != MATERIAL_COATED {
         return vec3<f32>(0.0);
     }
-    let once = refraction(cos_i, sides.eta).reflectance;
+    var once = refraction(cos_i, sides.eta).reflectance;
+    if paper_refraction == PAPER_EXACT {
+        // The paper's glass refracts all light that it can.
+        once = floor(once);
+    }
     return vec3<f32>(select(once, 2.0 * once / (1.0 + once), kind == MATERIAL_THIN_WALLED));
 }
 
@@ -61,6 +66,9 @@ struct SpecularEvent {
 fn turn(material: Material, d: vec3<f32>, n: vec3<f32>, m: vec3<f32>, sides: Interface, u: f32) -> SpecularEvent {
     let kind = material.kind & MATERIAL_KIND_BITS;
     let cos_i = -dot(d, m);
+    if paper_refraction == PAPER_PRINTED && kind == MATERIAL_DIELECTRIC {
+        return SpecularEvent(refract_by_equation_3(d, m, cos_i, sides.eta), true, n, material.tint);
+    }
     let reflectance = specular_reflectance(material, cos_i, sides);
     let splits = transmits(kind);
     if !splits || u < reflectance.x {

@@ -15,6 +15,8 @@ override has_distant_lights: bool = true;
 override has_environment: bool = true;
 /// Whether surfaces show pictures.
 override has_textures: bool = true;
+/// Whether meshes have colours at their vertices.
+override has_vertex_colors: bool = true;
 /// Whether rays may pass surfaces as if they were not there.
 override has_holes: bool = true;
 /// Whether light has wavelengths.
@@ -25,6 +27,8 @@ override photon_light_kind: u32 = 0u;
 override has_footprints: bool = true;
 /// Whether a guide moves photons.
 override has_guide: bool = true;
+/// Whether light follows the 2016 paper's model, and how it turns at glass: one of the PAPER_ constants.
+override paper_refraction: u32 = 1u;
 /// Whether camera paths note which texels they see.
 override notes_sightings: bool = false;
 /// Whether light is kept apart by how it came.
@@ -35,3 +39,10 @@ override has_data_layers: bool = false;
 override light_group_count: u32 = 0u;
 /// Whether the sum of the first half of the samples is kept, for an estimate of the error.
 override has_halves: bool = false;
+
+/// Light is physical.
+const PAPER_NONE: u32 = 0u;
+/// The paper's model, refraction by its equation 3 as printed.
+const PAPER_PRINTED: u32 = 1u;
+/// The paper's model, refraction by Snell's law.
+const PAPER_EXACT: u32 = 2u;

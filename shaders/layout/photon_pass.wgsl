@@ -55,6 +55,10 @@ struct PhotonParams {
     scene_center: vec3<f32>,
     /// Its radius, metres.
     scene_radius: f32,
+    /// In the profile `paper`, the energy of each ray.
+    ray_energy: vec3<f32>,
+    /// In the profile `paper`, the steps of each angle; 0 for random angles.
+    grid_side: u32,
     /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
     /// at neighbouring points.
     order: array<vec4<u32>, 8>,

@@ -2,7 +2,7 @@
 
 import package::layout::scene::{
     corners, emitting_triangles, environment, lights, maps, material_textures, materials, nodes, spectra, surface_textures, texture_coordinates,
-    texture_texels, triangles, BvhNode, Light, MapLayer, MapSquare, MapTile, Material, MaterialTextures, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners,
+    texture_texels, triangles, vertex_colors, BvhNode, Light, MapLayer, MapSquare, MapTile, Material, MaterialTextures, SurfaceTexture, TextureCoordinates, Triangle, TriangleCorners, VertexColors,
     LIGHT_GROUP_SHIFT, LIGHT_KIND_BITS, RECORDS_WIDTH_BITS, WAVELENGTH_STEPS,
 };
 
@@ -143,6 +143,12 @@ fn load_texture_coordinates(triangle: u32) -> TextureCoordinates {
     let texel_0 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle), 0));
     let texel_1 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle + 1u), 0));
     return TextureCoordinates(texel_0, texel_1.xy, vec2<u32>(0u));
+}
+
+fn load_vertex_colors(triangle: u32) -> VertexColors {
+    let texel_0 = textureLoad(vertex_colors, record_texel(2u * triangle), 0);
+    let texel_1 = textureLoad(vertex_colors, record_texel(2u * triangle + 1u), 0);
+    return VertexColors(texel_0.xy, texel_0.zw, texel_1.xy, texel_1.zw);
 }
 
 /// The pictures of a material.

@@ -58,6 +58,18 @@ struct TextureCoordinates {
     padding: vec2<u32>,
 }
 
+/// Factors on the colour of a triangle at its corners, in the order of the triangles: red and green, then blue, in half precision.
+struct VertexColors {
+    /// That of the first corner.
+    color_0: vec2<u32>,
+    /// That of the second corner.
+    color_1: vec2<u32>,
+    /// That of the third corner.
+    color_2: vec2<u32>,
+    /// Unused.
+    padding: vec2<u32>,
+}
+
 /// The pictures of a material: indices of SurfaceTexture records, or NONE.
 struct MaterialTextures {
     /// Factor on the material's colour.
@@ -149,7 +161,7 @@ struct Material {
     base: vec3<f32>,
     /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER; from MATERIAL_GROUP_SHIFT on the index of its light group.
     kind: u32,
-    /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
+    /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal (of a textured surface that of what is no metal), Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
     specular: vec3<f32>,
     /// Index of refraction; exponent of Phong's specular lobe.
     ior: f32,
@@ -177,7 +189,7 @@ struct Light {
     strength: vec3<f32>,
     /// Probability with which the camera pass chooses a light up to and including this one.
     cumulative_probability: f32,
-    /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+    /// Unit axis of a spot, or of the sphere of the profile `paper`; cosine and sine of an environment's turn about +y.
     axis: vec3<f32>,
     /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
     kind: u32,
@@ -205,7 +217,7 @@ const MATERIAL_KIND_BITS: u32 = 0xffu;
 const MATERIAL_CASTER: u32 = 0x100u;
 /// Set where the surface has a diffuse lobe and an energy map.
 const MATERIAL_RECEIVER: u32 = 0x200u;
-/// Set where pictures make the surface differ from point to point.
+/// Set where pictures or vertex colours make the surface differ from point to point.
 const MATERIAL_TEXTURED: u32 = 0x400u;
 /// Where the index of the light group stands in `Material::kind`.
 const MATERIAL_GROUP_SHIFT: u32 = 16u;
@@ -275,3 +287,5 @@ const WAVELENGTH_STEPS: u32 = 512u;
 /// weight of its wavelength, and the primaries' spectra there. Then a row for each dielectric with dispersion, of a texel for each step: its
 /// index of refraction there and at the next.
 @group(0) @binding(12) var spectra: texture_2d<u32>;
+/// VertexColors records of 2 texels; without vertex colours, a single one.
+@group(0) @binding(13) var vertex_colors: texture_2d<u32>;

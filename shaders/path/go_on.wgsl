@@ -3,6 +3,7 @@
 import package::bsdf::base::gloss_reflectance;
 import package::bsdf::specular::{evaluate_specular, scatter_specular};
 import package::geometry::surface::leave;
+import package::layout::features::{paper_refraction, PAPER_NONE};
 import package::layout::path_pass::{path_params, LAYER_DIRECT, LAYER_INDIRECT};
 import package::layout::scene::{MATERIAL_DIELECTRIC, MATERIAL_MIRROR};
 import package::path::state::{layer_at_receiver, pass_caster, Path, SLOT_MICROFACET, SLOT_VERTEX};
@@ -22,7 +23,7 @@ fn go_on_specular(path: ptr<function, Path>, vertex: Vertex, u: f32, choice: u32
     let event = scatter_specular(vertex.material, d, point.n_g, point.n_s, vertex.sides, u, v);
     (*path).beta *= at_wavelength(event.weight, (*path).wavelength) / vertex.specular_chance;
     if event.transmitted {
-        if vertex.kind == MATERIAL_DIELECTRIC {
+        if vertex.kind == MATERIAL_DIELECTRIC && paper_refraction == PAPER_NONE {
             // Radiance is squeezed into a narrower cone in a denser medium: L/n² is what stays.
             (*path).beta *= vertex.sides.eta * vertex.sides.eta;
         }

@@ -105,6 +105,17 @@ shared_structs! {
         /// Unused.
         padding: [u32; 2],
     }
+    /// Factors on the colour of a triangle at its corners, in the order of the triangles: red and green, then blue, in half precision.
+    struct VertexColors {
+        /// That of the first corner.
+        color_0: [u32; 2],
+        /// That of the second corner.
+        color_1: [u32; 2],
+        /// That of the third corner.
+        color_2: [u32; 2],
+        /// Unused.
+        padding: [u32; 2],
+    }
     /// The pictures of a material: indices of SurfaceTexture records, or NONE.
     struct MaterialTextures {
         /// Factor on the material's colour.
@@ -184,7 +195,7 @@ shared_structs! {
         base: [f32; 3],
         /// One of the MATERIAL_ constants, with the bits MATERIAL_CASTER and MATERIAL_RECEIVER; from MATERIAL_GROUP_SHIFT on the index of its light group.
         kind: u32,
-        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal, Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
+        /// A mirror's reflectance, a conductor's real index, Schlick's reflectance along the normal (of a textured surface that of what is no metal), Phong's specular share. Of a dielectric, x is the row of its indices among the spectra, or negative without dispersion.
         specular: [f32; 3],
         /// Index of refraction; exponent of Phong's specular lobe.
         ior: f32,
@@ -211,7 +222,7 @@ shared_structs! {
         strength: [f32; 3],
         /// Probability with which the camera pass chooses a light up to and including this one.
         cumulative_probability: f32,
-        /// Unit axis of a spot; cosine and sine of an environment's turn about +y.
+        /// Unit axis of a spot, or of the sphere of the profile `paper`; cosine and sine of an environment's turn about +y.
         axis: [f32; 3],
         /// One of the LIGHT_ constants; from LIGHT_GROUP_SHIFT on the index of its group.
         kind: u32,
@@ -275,6 +286,10 @@ shared_structs! {
         scene_center: [f32; 3],
         /// Its radius, metres.
         scene_radius: f32,
+        /// In the profile `paper`, the energy of each ray.
+        ray_energy: [f32; 3],
+        /// In the profile `paper`, the steps of each angle; 0 for random angles.
+        grid_side: u32,
         /// Columns of the bit matrix that takes a place in the block to a photon, so that neighbours in the dispatch are aimed
         /// at neighbouring points.
         order: [[u32; 4]; 8],
@@ -552,7 +567,7 @@ pub mod material_kind {
     pub const CASTER: u32 = 0x100;
     /// Set where the surface has a diffuse lobe and an energy map.
     pub const RECEIVER: u32 = 0x200;
-    /// Set where pictures make the surface differ from point to point.
+    /// Set where pictures or vertex colours make the surface differ from point to point.
     pub const TEXTURED: u32 = 0x400;
     /// Where the index of the light group stands.
     pub const GROUP_SHIFT: u32 = 16;
@@ -634,6 +649,16 @@ pub mod ledger {
     pub const ACCOUNTS: u32 = 8;
 }
 
+/// Values of the override constant `paper_refraction`.
+pub mod paper_refraction {
+    /// Light is physical.
+    pub const NONE: u32 = 0;
+    /// The paper's model, refraction by its equation 3 as printed.
+    pub const PRINTED: u32 = 1;
+    /// The paper's model, refraction by Snell's law.
+    pub const EXACT: u32 = 2;
+}
+
 /// Constants that both sides know: name in WGSL, value.
 pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("NONE", NONE),
@@ -664,6 +689,9 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("WRAP_CLAMP", texture_flag::WRAP_CLAMP),
     ("TEXTURE_NEAREST", texture_flag::NEAREST),
     ("TEXTURE_CHANNEL_SHIFT", texture_flag::CHANNEL_SHIFT),
+    ("PAPER_NONE", paper_refraction::NONE),
+    ("PAPER_PRINTED", paper_refraction::PRINTED),
+    ("PAPER_EXACT", paper_refraction::EXACT),
     ("LIGHT_SPHERE", light_kind::SPHERE),
     ("LIGHT_POINT", light_kind::POINT),
     ("LIGHT_SPOT", light_kind::SPOT),

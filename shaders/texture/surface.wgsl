@@ -1,9 +1,9 @@
-// What pictures make of a surface at a point; docs/materials.md, "Textures".
+// What pictures and vertex colours make of a surface at a point; docs/materials.md, "Textures".
 
 import package::geometry::surface::{surface_point, SurfacePoint};
 import package::geometry::traverse::Hit;
-import package::layout::features::{has_gloss, has_textures};
-import package::layout::records::{load_material, load_material_textures, load_surface_texture, load_texture_coordinates};
+import package::layout::features::{has_gloss, has_textures, has_vertex_colors};
+import package::layout::records::{load_material, load_material_textures, load_surface_texture, load_texture_coordinates, load_vertex_colors};
 import package::layout::scene::{
     Material, SurfaceTexture, TextureCoordinates, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, MATERIAL_TEXTURED, NONE,
 };
@@ -11,8 +11,6 @@ import package::texture::lookup::{channel_of, interpolate_uv, picture_place, sam
 
 /// Roughness under which a surface is perfectly smooth.
 const SMOOTH: f32 = 0.03;
-/// Reflectance along the normal of the dielectric part of glTF's model.
-const DIELECTRIC_F0: f32 = 0.04;
 
 /// Slots of a material's pictures, in the order in which they are looked up.
 const SLOT_COLOR: u32 = 0u;
@@ -48,6 +46,24 @@ fn mapped_normal(texture: SurfaceTexture, strength: f32, c: vec3<f32>, coordinat
     return normalize(m.x * t + m.y * b + m.z * n);
 }
 
+/// The factor that a triangle's vertex colours make at a hit.
+fn vertex_color(hit: Hit) -> vec3<f32> {
+    let c = load_vertex_colors(hit.triangle);
+    let b = hit.barycentric;
+    let red_green = (1.0 - b.x - b.y) * unpack2x16float(c.color_0.x) + b.x * unpack2x16float(c.color_1.x) + b.y * unpack2x16float(c.color_2.x);
+    let blue = (1.0 - b.x - b.y) * unpack2x16float(c.color_0.y) + b.x * unpack2x16float(c.color_1.y) + b.y * unpack2x16float(c.color_2.y);
+    return vec3<f32>(red_green, blue.x);
+}
+
+/// A material before `derive`, its colour times a factor.
+fn colored(source: Material, factor: vec3<f32>) -> Material {
+    var material = source;
+    material.base *= factor;
+    material.tint *= factor;
+    material.specular *= select(vec3<f32>(1.0), factor, (source.kind & MATERIAL_KIND_BITS) == MATERIAL_MIRROR);
+    return material;
+}
+
 /// What follows from a material's colour, roughness and share of metal at the point.
 fn derive(source: Material) -> Material {
     var material = source;
@@ -58,7 +74,7 @@ fn derive(source: Material) -> Material {
     }
     if has_gloss && kind == MATERIAL_METALLIC_ROUGHNESS {
         let metallic = source.extinction.x;
-        let f_0 = mix(vec3<f32>(DIELECTRIC_F0), source.base, metallic);
+        let f_0 = mix(source.specular, source.base, metallic);
         let average = f_0 + (1.0 - f_0) / 21.0;
         material.base = (1.0 - metallic) * source.base / max(1.0 - average, vec3<f32>(1e-30));
         material.specular = f_0;
@@ -72,6 +88,9 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
     let coordinates = load_texture_coordinates(hit.triangle);
     let uv = interpolate_uv(coordinates, hit.barycentric);
     var material = source;
+    if has_vertex_colors {
+        material = colored(source, vertex_color(hit));
+    }
     var point = untextured;
     let slots = array<u32, SLOTS>(textures.color, textures.roughness, textures.metallic, textures.emission, textures.normal);
     // A loop rather than five calls, for calls are inlined.
@@ -82,10 +101,7 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
         let texture = load_surface_texture(slots[slot]);
         let value = sample_texture(texture, uv);
         let number = channel_of(texture, value);
-        let color = select(vec3<f32>(1.0), value.xyz, slot == SLOT_COLOR);
-        material.base *= color;
-        material.tint *= color;
-        material.specular *= select(vec3<f32>(1.0), color, (source.kind & MATERIAL_KIND_BITS) == MATERIAL_MIRROR);
+        material = colored(material, select(vec3<f32>(1.0), value.xyz, slot == SLOT_COLOR));
         material.gloss *= select(1.0, number, slot == SLOT_ROUGHNESS);
         material.extinction *= select(1.0, number, slot == SLOT_METALLIC);
         material.emission *= select(vec3<f32>(1.0), value.xyz, slot == SLOT_EMISSION);
@@ -99,7 +115,7 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
     return TexturedSurface(derive(material), point);
 }
 
-/// The surface at a hit, seen along `direction`, with its pictures if it has any.
+/// The surface at a hit, seen along `direction`, with its pictures and vertex colours if it has any.
 fn surface_at(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
     let point = surface_point(hit, triangle, direction);
     let material = load_material(triangle.material);

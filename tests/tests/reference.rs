@@ -64,6 +64,7 @@ fn both(scene: &Scene) -> Both {
             ReferenceEmission::Aimed(&discs)
         }
         Emission::Unaimed => ReferenceEmission::Unaimed,
+        Emission::Paper { .. } => panic!("the reference follows the physical model"),
         Emission::Toward(list) => {
             spheres = list
                 .iter()
@@ -144,6 +145,19 @@ const LAMP: &str = "{ type = \"sphere\", center = [1.0, 2.5, 0.6], radius = 0.05
 #[test]
 fn ball() {
     assert_alike(&over_a_floor("mesh = \"assets/meshes/ball.obj\"", LAMP), 2e-3);
+}
+
+#[test]
+fn a_ball_of_colored_vertices() {
+    let mut scene = over_a_floor("sphere = { center = [0, 0.3, 0], radius = 0.2 }", LAMP);
+    let mesh = std::sync::Arc::make_mut(&mut scene.objects[0].mesh);
+    mesh.colors = mesh
+        .positions
+        .iter()
+        .map(|p| (0.5 + 2.0 * (*p - Vec3::new(0.0, 0.3, 0.0))).clamp(Vec3::ZERO, Vec3::ONE))
+        .collect();
+    // The floor's colours have no part in what its map holds.
+    assert_alike(&scene, 5e-3);
 }
 
 #[test]

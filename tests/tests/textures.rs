@@ -73,6 +73,24 @@ fn between_texels_the_picture_is_bilinear() {
 }
 
 #[test]
+fn vertex_colors_multiply_the_albedo_and_its_picture() {
+    let mut scene = floor();
+    let mesh = std::sync::Arc::make_mut(&mut scene.objects[0].mesh);
+    let share = |x: f32| 0.5 + 0.5 * x;
+    mesh.colors = mesh.positions.iter().map(|p| Vec3::new(share(p.x), 1.0 - share(p.x), 0.25)).collect();
+    for (texture, factor) in [(None, DVec3::ONE), (Some(picture(1, &[0.25])), DVec3::new(0.25, 0.5, 0.75))] {
+        scene.materials[0].textures.color = texture;
+        let film = render(&scene);
+        for column in 0..32 {
+            let s = (column as f64 + 0.5) / 32.0;
+            let expected = factor * DVec3::new(s, 1.0 - s, 0.25);
+            let found = mean(&film, column..column + 1, 0..16);
+            assert!((found - expected).abs().max_element() < 2e-3, "column {column}: {found}, not {expected}");
+        }
+    }
+}
+
+#[test]
 fn pictures_wrap_turn_and_move() {
     let two = picture(2, &[0.1, 0.3]);
     let cases = [

@@ -2,7 +2,7 @@
 
 use diacaustic::{EnergyMap, MapTile, Renderer, RendererOptions, SceneReport, glam::DVec2};
 use diacaustic_scene::{RenderSettings, Scene};
-use diacaustic_tests::{gpu, mean, scene};
+use diacaustic_tests::{gpu, mean, samples_of, scene};
 
 /// A renderer with a scene set, and what that has built.
 fn set(scene: &Scene) -> (Renderer, SceneReport) {
@@ -31,7 +31,7 @@ fn ball_on_a_floor(side: f32, settings: &str) -> Scene {
 fn caustic_blocks(scene: &Scene, photons: u64) -> (Vec<f64>, SceneReport) {
     let (mut renderer, report) = set(scene);
     renderer.emit_photons(0..photons).unwrap();
-    renderer.add_samples(scene.settings.samples).unwrap();
+    renderer.add_samples(samples_of(&scene)).unwrap();
     let width = scene.settings.width as usize;
     let layers = renderer.layers().unwrap();
     let caustic = layers[0].channels.iter().find(|channel| channel.name.ends_with('G')).expect("a green channel");
@@ -205,6 +205,19 @@ fn a_stated_size_is_even_or_refused() {
         Ok(_) => assert!(available > 1 << 30, "{available} bytes can be bound, and 3 GiB were taken"),
     }
     assert_eq!(renderer.energy_map(0).unwrap().unwrap().width, 100, "the scene set before stays");
+}
+
+#[test]
+fn sums_larger_than_a_binding_are_whole() {
+    let mut scene = ball_on_a_floor(2.0, ", guiding = false");
+    scene.settings.map_size = Some(2000);
+    let (mut renderer, report) = set(&scene);
+    assert!(report.map_bytes > 128 << 20, "{} bytes fit into a binding of WebGPU's default limits", report.map_bytes);
+    renderer.emit_photons(0..20_000).unwrap();
+    let map = renderer.energy_map(0).unwrap().unwrap();
+    let deposited = renderer.statistics().unwrap().ledgers[0].deposited;
+    assert_eq!(map.sums.iter().map(|sum| sum[1]).sum::<i64>(), deposited[1]);
+    assert!(deposited[1] > 0, "nothing was deposited");
 }
 
 #[test]

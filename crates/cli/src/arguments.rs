@@ -4,7 +4,13 @@ use std::ffi::OsString;
 
 use clap::{Args as _, FromArgMatches as _, Subcommand as _};
 
-use crate::commands::{bake::BakeArguments, inspect::InspectArguments, render::RenderArguments};
+use crate::commands::{
+    bake::BakeArguments,
+    completions::{CompletionsArguments, ManArguments},
+    experiment::ExperimentArguments,
+    inspect::InspectArguments,
+    render::RenderArguments,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -16,15 +22,21 @@ Examples:
       changes the scene without changing its file
   diacaustic teapot.toml --time-limit 60 --energy-maps maps --stats teapot.json
       stops after a minute; writes irradiance and statistics beside the picture
+  diacaustic teapot.toml --checkpoint teapot.state --every 5min
+      keeps how far it is; after a crash, the same with --resume teapot.state goes on to the same picture
   diacaustic vase.glb --floor
       renders a glTF file through its own camera and by its own lights, if it has any, on a floor
   diacaustic bake teapot.toml --size 1024
       writes lightmaps and the scene with them as teapot.baked/scene.glb
   diacaustic inspect teapot.toml
-      tells what the scene holds, without rendering it
+      tells what the scene holds and what it needs on the GPU, and which GPUs there are
+  source <(diacaustic completions bash)
+      completes the command line in this shell
+  diacaustic experiment assets/experiments/paper.toml
+      renders the tables of an experiment file and writes paper/index.html
 
-Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails.
-WGPU_BACKEND and WGPU_ADAPTER_NAME choose the GPU.";
+Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails, 130 after Ctrl-C,
+which writes what there is; a second one ends the program at once.";
 
 /// Renders glass and the caustics that it casts.
 ///
@@ -40,6 +52,12 @@ pub enum Command {
     Bake(BakeArguments),
     /// Tell what a scene holds, without rendering it
     Inspect(InspectArguments),
+    /// Sweep over a scene: tables of pictures with figures, findings judged, all on one page
+    Experiment(ExperimentArguments),
+    /// Print what a shell needs to complete the command line
+    Completions(CompletionsArguments),
+    /// Write the manual's pages
+    Man(ManArguments),
 }
 
 impl Command {

@@ -18,9 +18,23 @@ pub enum Error {
     /// A file cannot be written.
     #[error(transparent)]
     Output(#[from] diacaustic_output::Error),
+    /// An experiment did not come about.
+    #[error(transparent)]
+    Experiment(#[from] diacaustic_experiment::Error),
     /// A floor is asked for where the scene file says what there is.
     #[error("{}: --floor goes with a glTF file; give a scene file a floor by an object of its own ([[objects]])", .0.display())]
     FloorOfSceneFile(PathBuf),
+    /// What only a glTF file has is asked of a scene file.
+    #[error("{}: --{option} goes with a glTF file; in a scene file, give its [[objects]] the key {option}", path.display())]
+    GltfOption {
+        /// The scene file.
+        path: PathBuf,
+        /// The option, without its dashes.
+        option: &'static str,
+    },
+    /// Frames are asked for, and the scene is glTF.
+    #[error("{}: --frames goes with a scene file (.toml) that has an [animation], and this is a glTF file", .0.display())]
+    FramesOfGltf(PathBuf),
     /// A value of a scene file is to be changed, and the scene is glTF.
     #[error(
         "{}: --set {path} goes with a scene file (.toml), and this is a glTF file; write one that names it: mesh = \"{}\"",
@@ -32,20 +46,57 @@ pub enum Error {
         /// The keys of the first override.
         path: String,
     },
+    /// A checkpoint is none, or of another render.
+    #[error("{}: cannot go on from this checkpoint{of_scene}: {problem}", path.display())]
+    Resume {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Of which scene it is, if that is known.
+        of_scene: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The program was asked to end before it was done.
+    #[error("interrupted; what was rendered until then is written")]
+    Interrupted {
+        /// The number of the signal.
+        signal: u8,
+    },
+    /// A bake was asked to end before it was done.
+    #[error("interrupted; no lightmaps are written")]
+    BakeInterrupted {
+        /// The number of the signal.
+        signal: u8,
+    },
+    /// The system does not say when the program is asked to end.
+    #[error("signals cannot be watched for: {0}")]
+    Signals(#[source] std::io::Error),
+    /// The manual cannot be written.
+    #[error("{}: the manual cannot be written: {cause}", folder.display())]
+    Manual {
+        /// Its folder.
+        folder: PathBuf,
+        /// What the system says.
+        cause: std::io::Error,
+    },
     /// One file would be written over another.
     #[error("{}: named twice; name a file of its own for each output, and not the scene", .0.display())]
     NamedTwice(PathBuf),
 }
 
 impl Error {
-    /// The exit status that tells what is at fault: 2, the arguments or the scene; 1, the device or a file.
+    /// The exit status that tells what is at fault: 2, the arguments or the scene; 1, the device or a file; 128 and the signal's number where
+    /// nothing is.
     pub fn exit_status(&self) -> u8 {
         use diacaustic::Error as Render;
         match self {
-            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::OverrideOfGltf { .. } => 2,
+            Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::GltfOption { .. } => 2,
+            Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } => 2,
+            Self::Interrupted { signal } | Self::BakeInterrupted { signal } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
-            Self::Render(_) | Self::Device(_) | Self::Output(_) => 1,
+            Self::Experiment(error) => error.exit_status(),
+            Self::Render(_) | Self::Device(_) | Self::Output(_) | Self::Signals(_) | Self::Manual { .. } => 1,
         }
     }
 }

@@ -4,7 +4,9 @@
 
 mod arguments;
 pub mod commands;
+mod device;
 mod error;
+mod interruption;
 mod numbers;
 mod progress;
 mod scene_arguments;
@@ -18,6 +20,7 @@ use std::{
 };
 
 pub use arguments::Command;
+pub use device::DeviceArguments;
 pub use error::Error;
 pub use scene_arguments::SceneArguments;
 pub use session::SessionArguments;
@@ -25,7 +28,7 @@ pub use session::SessionArguments;
 /// Runs the command with the arguments of a process, the program's name first, and reports errors on the standard error.
 ///
 /// The exit status is 0 when everything is written, 2 when the arguments or the scene are wrong, and 1 when the device or
-/// a file fails. Blocks until then.
+/// a file fails; 130 and 143 when Ctrl-C or a request to terminate ended it, after what there was is written. Blocks until then.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let command = match Command::parse(arguments) {
         Ok(command) => command,
@@ -35,6 +38,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Render(arguments) => commands::render::run(&arguments),
         Command::Bake(arguments) => commands::bake::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
+        Command::Completions(arguments) => {
+            commands::completions::run(&arguments);
+            Ok(())
+        }
+        Command::Man(arguments) => commands::completions::write_manual(&arguments),
+        Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,6 +1,6 @@
 //! Numbers as arguments.
 
-use std::time::Duration;
+use std::{ops::RangeInclusive, time::Duration};
 
 pub(crate) fn parse_photons(text: &str) -> Result<u64, String> {
     parse_whole(text, 0).map(u64::from)
@@ -41,15 +41,21 @@ fn parse_whole(text: &str, least: u32) -> Result<u32, String> {
     if digits_at_ends && value >= least { Ok(value) } else { Err(expected()) }
 }
 
-/// Seconds, without a unit.
-pub(crate) fn parse_seconds(text: &str) -> Result<Duration, String> {
-    positive(text, 1.0).ok_or_else(|| "expected a number of seconds greater than 0, such as 60 or 2.5".to_owned())
+/// Two frames with dots between.
+pub(crate) fn parse_frames(text: &str) -> Result<RangeInclusive<u32>, String> {
+    let frame = |text| parse_whole(text, 0).ok();
+    let range = text.split_once("..").and_then(|(first, last)| Some(frame(first)?..=frame(last)?));
+    range
+        .filter(|range| !range.is_empty())
+        .ok_or_else(|| "expected the first and the last frame, such as 1..48".to_owned())
 }
 
-/// So many units of some seconds.
-fn positive(text: &str, unit: f64) -> Option<Duration> {
-    let number: f64 = text.parse().ok()?;
-    Duration::try_from_secs_f64(number * unit).ok().filter(|duration| !duration.is_zero())
+/// Seconds, without a unit.
+pub(crate) fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let expected = || "expected a number of seconds greater than 0, such as 60 or 2.5".to_owned();
+    let seconds: f64 = text.parse().map_err(|_| expected())?;
+    let duration = Duration::try_from_secs_f64(seconds).map_err(|_| expected())?;
+    if duration.is_zero() { Err(expected()) } else { Ok(duration) }
 }
 
 #[cfg(test)]
@@ -62,6 +68,10 @@ mod tests {
             assert!(parse_photons(bad).is_err(), "{bad:?}");
         }
         assert_eq!((parse_photons("0"), parse_photons("4_294_967_295")), (Ok(0), Ok(u64::from(u32::MAX))));
+        assert_eq!((parse_frames("1..48"), parse_frames("7..7")), (Ok(1..=48), Ok(7..=7)));
+        for bad in ["", "1", "1..", "..2", "2..1", "1..=2", "-1..2", "a..b"] {
+            assert!(parse_frames(bad).is_err(), "{bad:?}");
+        }
         assert!(parse_samples("0").unwrap_err().contains("from 1 to"));
         for bad in ["0", "-1", "1.5", "nan", "inf", "5%", ""] {
             assert!(parse_target_error(bad).is_err(), "{bad:?}");

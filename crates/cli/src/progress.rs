@@ -72,16 +72,18 @@ impl Progress {
         Meter { progress: self, name, start: now, last_line: now, spinner }
     }
 
-    /// Begins to count work of known length.
-    pub fn count(self, name: &'static str, total: u64) -> Counter {
+    /// Begins to count work of known length, of which some is done.
+    pub fn count(self, name: &'static str, done: u64, total: u64) -> Counter {
         let bar = (self == Self::Bars).then(|| {
             let bar = ProgressBar::new(total);
             bar.set_style(style("{prefix:8} [{bar:32}] {percent:>3} %  {rate}/s  {left}"));
             bar.set_prefix(name);
+            bar.set_position(done);
+            bar.reset_eta();
             bar
         });
         let now = Instant::now();
-        Counter { progress: self, name, total, start: now, last_line: now, bar }
+        Counter { progress: self, name, before: done, total, start: now, last_line: now, bar }
     }
 }
 
@@ -107,6 +109,8 @@ fn style(template: &str) -> ProgressStyle {
 pub(crate) struct Counter {
     progress: Progress,
     name: &'static str,
+    /// What was done before the count began.
+    before: u64,
     total: u64,
     start: Instant,
     last_line: Instant,
@@ -131,15 +135,16 @@ impl Counter {
         }
         let took = self.start.elapsed();
         let of_total = if done < self.total { format!(" of {}", self.total) } else { String::new() };
-        let rate = Metric(rate(done, took));
+        let rate = Metric(rate(done - self.before, took));
         self.progress.say(format_args!("{}: {done}{of_total} in {} ({rate}/s)", self.name, Seconds(took)));
         took
     }
 
     fn line(&self, done: u64) -> String {
         let took = self.start.elapsed();
-        let left = took.mul_f64((self.total - done) as f64 / done.max(1) as f64);
-        let (percent, rate) = (100 * done / self.total.max(1), Metric(rate(done, took)));
+        let now = done - self.before;
+        let left = took.mul_f64((self.total - done) as f64 / now.max(1) as f64);
+        let (percent, rate) = (100 * done / self.total.max(1), Metric(rate(now, took)));
         format!("{}: {percent} % ({done} of {}), {rate}/s, {} left", self.name, self.total, Seconds(left))
     }
 }
@@ -222,16 +227,23 @@ mod tests {
     #[test]
     fn lines_say_how_much_is_left() {
         let start = Instant::now() - Duration::from_secs(30);
-        let counter =
-            Counter { progress: Progress::Lines, name: "photons", total: 400, start, last_line: start, bar: None };
-        assert_eq!(counter.line(100), "photons: 25 % (100 of 400), 3.33 /s, 90 s left");
-        assert!(counter.line(0).starts_with("photons: 0 %"));
+        let counter = Counter {
+            progress: Progress::Lines,
+            name: "photons",
+            before: 40,
+            total: 400,
+            start,
+            last_line: start,
+            bar: None,
+        };
+        assert_eq!(counter.line(100), "photons: 25 % (100 of 400), 2.00 /s, 150 s left");
+        assert!(counter.line(40).starts_with("photons: 10 %"));
         assert!(counter.finish(400) >= Duration::from_secs(30));
     }
 
     #[test]
     fn templates_are_well_formed() {
-        let mut counter = Progress::Bars.count("photons", 10);
+        let mut counter = Progress::Bars.count("photons", 2, 10);
         counter.set(5);
         counter.finish(10);
         let mut meter = Progress::Bars.measure("samples");

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use diacaustic::scene::{
-    Error as SceneError, LoadedScene, Override, ReadOptions, SceneOptions, StudioOptions, load_gltf_scene,
+    Error as SceneError, GltfOptions, LoadedScene, Override, ReadOptions, SceneOptions, StudioOptions, load_gltf_scene,
     load_scene_with,
 };
 
@@ -30,12 +30,24 @@ pub struct SceneArguments {
     #[arg(long)]
     pub floor: bool,
 
+    /// Pose a glTF file's scene as its animation has it at this time
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f32>,
+
+    /// The animation of a glTF file, by name or by number from 0; without it the first, if a time is given
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+
+    /// The material variant of a glTF file, by name
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+
     /// Read files that a glTF or OBJ file names outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
 }
 
-fn parse_override(text: &str) -> Result<Override, String> {
+pub(crate) fn parse_override(text: &str) -> Result<Override, String> {
     Override::parse(text).map_err(|error| match error {
         // The argument is named before the message.
         SceneError::Override { problem, .. } => problem,
@@ -49,7 +61,7 @@ impl SceneArguments {
     /// # Errors
     /// If it cannot be read, or is glTF and an argument is for scene files, or the other way round.
     pub fn load(&self) -> Result<LoadedScene, Error> {
-        self.load_with(false)
+        self.load_frame(None)
     }
 
     /// Reads the scene as [`Self::load`] does, also without a camera.
@@ -57,25 +69,48 @@ impl SceneArguments {
     /// # Errors
     /// As [`Self::load`].
     pub fn load_for_baking(&self) -> Result<LoadedScene, Error> {
-        self.load_with(true)
+        self.load_with(None, true)
     }
 
-    fn load_with(&self, may_lack_camera: bool) -> Result<LoadedScene, Error> {
+    /// Reads the scene as it is at a frame of its animation, or without any.
+    ///
+    /// # Errors
+    /// As [`SceneArguments::load`], and if it has no animation.
+    pub fn load_frame(&self, frame: Option<u32>) -> Result<LoadedScene, Error> {
+        self.load_with(frame, false)
+    }
+
+    fn load_with(&self, frame: Option<u32>, may_lack_camera: bool) -> Result<LoadedScene, Error> {
         let read = ReadOptions { allow_outside: self.allow_outside };
-        let mut loaded = if self.is_gltf() {
+        if self.is_gltf() {
+            if frame.is_some() {
+                return Err(Error::FramesOfGltf(self.scene.clone()));
+            }
             if let Some(first) = self.overrides.first() {
                 return Err(Error::OverrideOfGltf { scene: self.scene.clone(), path: first.path() });
             }
-            load_gltf_scene(&self.scene, &StudioOptions { floor: self.floor, read })?
-        } else {
-            if self.floor {
-                return Err(Error::FloorOfSceneFile(self.scene.clone()));
-            }
-            load_scene_with(&self.scene, &SceneOptions { overrides: self.overrides.clone(), read, may_lack_camera })?
-        };
-        let settings = &mut loaded.scene.settings;
-        settings.seed = self.seed.unwrap_or(settings.seed);
-        Ok(loaded)
+            let Self { time, animation, variant, .. } = self.clone();
+            let options = StudioOptions { floor: self.floor, file: GltfOptions { read, time, animation, variant } };
+            let mut loaded = load_gltf_scene(&self.scene, &options)?;
+            let settings = &mut loaded.scene.settings;
+            settings.seed = self.seed.unwrap_or(settings.seed);
+            return Ok(loaded);
+        }
+        if self.floor {
+            return Err(Error::FloorOfSceneFile(self.scene.clone()));
+        }
+        let gltf_options = [
+            ("time", self.time.is_some()),
+            ("animation", self.animation.is_some()),
+            ("variant", self.variant.is_some()),
+        ];
+        if let Some((option, _)) = gltf_options.iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::GltfOption { path: self.scene.clone(), option });
+        }
+        let mut overrides = self.overrides.clone();
+        // Each frame may have a seed of its own that begins with it.
+        overrides.extend(self.seed.map(|seed| Override::parse(&format!("render.seed={seed}"))).transpose()?);
+        Ok(load_scene_with(&self.scene, &SceneOptions { overrides, frame, read, may_lack_camera })?)
     }
 
     /// Whether the scene is a glTF file by its name.

@@ -3,13 +3,16 @@
 mod chunks;
 mod warnings;
 
-use std::time::{Duration, Instant};
+use std::{
+    ops::ControlFlow,
+    time::{Duration, Instant},
+};
 
 use diacaustic::{
-    Refinement, Renderer, RendererOptions, SceneReport, Stage,
+    Refinement, RenderState, Renderer, SceneReport, Stage,
     scene::{LoadedScene, Scene, Warning},
 };
-use diacaustic_headless::{Gpu, OpenOptions};
+use diacaustic_headless::Gpu;
 
 use self::{
     chunks::{first_photons, in_chunks, photon_deadline, rounded_photons},
@@ -17,6 +20,8 @@ use self::{
 };
 use crate::{
     Error,
+    device::DeviceArguments,
+    interruption::Interruption,
     progress::{Metric, Progress, Seconds},
     scene_arguments::SceneArguments,
 };
@@ -30,6 +35,10 @@ pub struct SessionArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
+
+    /// The device.
+    #[command(flatten)]
+    pub device: DeviceArguments,
 
     /// Print nothing but errors
     #[arg(short, long)]
@@ -61,22 +70,33 @@ pub(crate) struct Session {
     /// The picture's estimated error, relative to its radiance.
     pub error: Option<f64>,
     pub times: Times,
+    pub interruption: Interruption,
+    attendants: Vec<Box<dyn Attendant>>,
     /// What was said about the scene.
     warnings: Vec<Warning>,
 }
 
+/// What is done now and then while photons and samples come in.
+pub(crate) trait Attendant {
+    /// Is called after each chunk of work, some tens of milliseconds or one sample long.
+    fn attend(&mut self, session: &mut Session) -> Result<(), Error>;
+}
+
 impl Session {
-    /// Opens the device and sets the scene on it. `times` go on from what is measured so far.
+    /// Opens the device and sets the scene on it, which took `load` to read.
     ///
     /// # Errors
     /// If there is no device, or the scene cannot be rendered on it.
-    pub fn open(progress: Progress, loaded: LoadedScene, mut times: Times) -> Result<Self, Error> {
+    pub fn open(arguments: &SessionArguments, loaded: LoadedScene, load: Duration) -> Result<Self, Error> {
+        let progress = Progress::new(arguments.quiet);
         let LoadedScene { scene, warnings } = loaded;
+        let mut times = Times { load, ..Times::default() };
+        let interruption = Interruption::watch().map_err(Error::Signals)?;
         let start = Instant::now();
-        let gpu = progress.spin("device", || diacaustic_headless::open(&OpenOptions::default()))?;
+        let gpu = progress.spin("device", || arguments.device.open())?;
         times.device = start.elapsed();
         let start = Instant::now();
-        let options = RendererOptions::default();
+        let options = arguments.device.renderer_options();
         let mut renderer = progress.spin("kernels", || Renderer::new(&gpu.device, &gpu.queue, &options))?;
         times.kernels = start.elapsed();
         let opened = Seconds(times.device + times.kernels);
@@ -98,63 +118,120 @@ impl Session {
             Seconds(times.scene)
         ));
         gpu.check()?;
-        Ok(Self { progress, scene, gpu, renderer, built, time_limit_reached: false, error: None, times, warnings })
+        Ok(Self {
+            progress,
+            scene,
+            gpu,
+            renderer,
+            built,
+            time_limit_reached: false,
+            error: None,
+            times,
+            interruption,
+            attendants: Vec::new(),
+            warnings,
+        })
+    }
+
+    /// Sets another scene on the same device, and forgets what attends.
+    ///
+    /// # Errors
+    /// If it cannot be rendered.
+    pub fn set_scene(&mut self, loaded: LoadedScene, load: Duration) -> Result<(), Error> {
+        let start = Instant::now();
+        self.built = self.progress.spin("bvh", || self.renderer.set_scene(&loaded.scene))?;
+        self.times = Times { load, scene: start.elapsed(), ..Times::default() };
+        self.gpu.check()?;
+        (self.scene, self.warnings) = (loaded.scene, loaded.warnings);
+        (self.time_limit_reached, self.error) = (false, None);
+        self.attendants.clear();
+        Ok(())
+    }
+
+    /// Lets something attend to the work from now on.
+    pub fn engage(&mut self, attendant: impl Attendant + 'static) {
+        self.attendants.push(Box::new(attendant));
+    }
+
+    /// Goes on from a saved state.
+    ///
+    /// # Errors
+    /// If it is of another render, or the device fails.
+    pub fn restore(&mut self, state: &RenderState) -> Result<(), Error> {
+        Ok(self.renderer.restore_state(state)?)
+    }
+
+    /// Looks after everything that goes on beside a chunk of work, and whether to go on.
+    fn after_chunk(&mut self) -> Result<ControlFlow<()>, Error> {
+        self.renderer.wait()?;
+        self.gpu.check()?;
+        let mut attendants = std::mem::take(&mut self.attendants);
+        let attended = attendants.iter_mut().try_for_each(|attendant| attendant.attend(self));
+        self.attendants = attendants;
+        attended?;
+        Ok(if self.interruption.signal().is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     /// Emits the scene's photons for maps that no picture is rendered of, and says why if no caustic came of them.
+    ///
+    /// # Errors
+    /// If the device fails, or an attendant does.
     pub fn emit_photons(&mut self, deadline: Option<Instant>) -> Result<(), Error> {
         let photons = self.scene.settings.photons.unwrap_or(PHOTONS_WITHOUT_CAMERA);
         if self.built.photon_turns > 0 && photons > 0 {
             let turns = self.built.photon_turns;
             let total = rounded_photons(photons, turns);
             let deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
-            let mut counter = self.progress.count("photons", total);
-            let (renderer, gpu) = (&mut self.renderer, &self.gpu);
-            let done = in_chunks(total, first_photons(turns), deadline, |numbers| {
-                let end = numbers.end;
-                renderer.emit_photons(numbers)?;
-                renderer.wait()?;
-                counter.set(end);
-                Ok::<_, Error>(gpu.check()?)
+            let mut counter = self.progress.count("photons", 0, total);
+            let mut done = 0;
+            in_chunks(0..total, first_photons(turns), deadline, |numbers| {
+                done = numbers.end;
+                self.renderer.emit_photons(numbers)?;
+                counter.set(done);
+                self.after_chunk()
             })?;
-            self.time_limit_reached |= done < total;
+            self.time_limit_reached |= done < total && self.interruption.signal().is_none();
             self.times.photons = counter.finish(done);
         }
         self.warn_about_photons()
     }
 
-    /// Renders until the scene's numbers of photons and samples, or its target error, are reached, or time is up; says why if no caustic came
-    /// of the photons.
+    /// Renders on until the scene's numbers of photons and samples, or its target error, are reached, time is up or a signal comes; says why if no
+    /// caustic came of the photons. There is one sample at least.
+    ///
+    /// # Errors
+    /// If the device fails, or an attendant does.
     pub fn refine(&mut self, deadline: Option<Instant>) -> Result<(), Error> {
         let photon_deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
-        let mut meter = self.progress.measure("photons");
-        let mut stage = Stage::Photons;
         let mut refinement = self.renderer.refinement()?;
+        let mut stage = refinement.stage;
+        let mut meter = self.progress.measure(name(stage));
         while refinement.stage != Stage::Done {
             if stage == Stage::Photons && refinement.stage == Stage::Samples {
-                self.times.photons = meter.finish(&photons_so_far(&refinement));
+                self.times.photons = meter.finish(&so_far(stage, &refinement));
                 self.warn_about_photons()?;
-                meter = self.progress.measure("samples");
+                meter = self.progress.measure(name(Stage::Samples));
             }
             stage = refinement.stage;
             let start = Instant::now();
             refinement = self.renderer.refine()?;
-            self.gpu.check()?;
+            let is_interrupted = self.after_chunk()?.is_break();
             let next_end = Instant::now() + start.elapsed();
             let is_over = |deadline: Option<Instant>| deadline.is_some_and(|deadline| next_end > deadline);
-            if refinement.stage == Stage::Photons && refinement.photons > 0 && is_over(photon_deadline) {
-                refinement = self.renderer.finish_photons()?;
-                self.time_limit_reached = true;
-            } else if refinement.stage == Stage::Samples && refinement.samples > 0.0 && is_over(deadline) {
-                self.time_limit_reached = true;
-                break;
+            meter.set(&so_far(stage, &refinement));
+            match refinement.stage {
+                Stage::Photons if is_interrupted || refinement.photons > 0 && is_over(photon_deadline) => {
+                    refinement = self.renderer.finish_photons()?;
+                    self.time_limit_reached |= !is_interrupted;
+                }
+                Stage::Samples if refinement.samples > 0.0 && (is_interrupted || is_over(deadline)) => {
+                    self.time_limit_reached |= !is_interrupted;
+                    break;
+                }
+                _ => {}
             }
-            meter.set(&match stage {
-                Stage::Photons => photons_so_far(&refinement),
-                Stage::Samples | Stage::Done => samples_so_far(&refinement),
-            });
         }
-        self.times.samples = meter.finish(&samples_so_far(&refinement));
+        self.times.samples = meter.finish(&so_far(Stage::Samples, &refinement));
         self.error = refinement.error;
         Ok(())
     }
@@ -169,11 +246,14 @@ impl Session {
     }
 }
 
-fn photons_so_far(refinement: &Refinement) -> String {
-    Metric(refinement.photons as f64).to_string().trim_end().to_owned()
+fn name(stage: Stage) -> &'static str {
+    if stage == Stage::Photons { "photons" } else { "samples" }
 }
 
-fn samples_so_far(refinement: &Refinement) -> String {
+fn so_far(stage: Stage, refinement: &Refinement) -> String {
+    if stage == Stage::Photons {
+        return Metric(refinement.photons as f64).to_string().trim_end().to_owned();
+    }
     let error = refinement.error.map_or(String::new(), |error| format!(", estimated error {:.1} %", 100.0 * error));
     format!("{:.1} a pixel{error}", refinement.samples)
 }

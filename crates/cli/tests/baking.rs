@@ -5,7 +5,7 @@ use std::{path::Path, process::Command};
 use diacaustic::{
     Film,
     glam::Vec3,
-    scene::{Material, MaterialKind, ReadOptions, Scene, ToneCurve, load_gltf, parse_scene},
+    scene::{GltfOptions, Material, MaterialKind, Scene, ToneCurve, load_gltf, parse_scene},
 };
 use diacaustic_tests::{mean, render};
 
@@ -60,7 +60,7 @@ fn room() -> Scene {
 
 /// A baked scene in which surfaces shine what their lightmaps show, and nothing else does.
 fn baked_scene(path: &Path, original: &Scene) -> Scene {
-    let file = load_gltf(path, ReadOptions::default()).unwrap();
+    let file = load_gltf(path, &GltfOptions::default()).unwrap();
     let mut scene = Scene { materials: file.materials, lights: Vec::new(), ..original.clone() };
     scene.objects.clear();
     for part in file.objects {

@@ -223,8 +223,12 @@ fn statistics_hold_the_counts_and_a_closed_ledger() {
 fn energy_maps_are_finite_irradiance_of_each_receiver() {
     let workplace = Workplace::new(BALL);
     workplace.render(&["--energy-maps", "new/maps"]);
-    let names: Vec<_> = fs::read_dir(workplace.path("new/maps")).unwrap().map(|f| f.unwrap().file_name()).collect();
-    assert_eq!(names, ["floor.exr"]);
+    let files = fs::read_dir(workplace.path("new/maps")).unwrap();
+    let mut names: Vec<_> = files.map(|file| file.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["floor.exr", "floor.png"]);
+    let picture = image::open(workplace.path("new/maps/floor.png")).unwrap();
+    assert!(picture.width() > 512 && picture.height() > 2 * 512, "both sides stand in the picture, enlarged");
     let map = workplace.exr("new/maps/floor.exr");
     assert_eq!((map.width, map.height), (32, 32));
     assert_lit(&map, &["B", "G", "R", "back.B", "back.G", "back.R"]);
@@ -270,10 +274,78 @@ fn inspect_tells_what_a_scene_holds_without_a_device() {
         "glass: dielectric, index 1.5; casts light on",
         "plaster: diffuse; receives light",
         "lamp: sphere of radius 0.05 m, [35, 35, 35] W",
+        "floor: 32 × 32 texels, both sides",
+        "adapters: 0",
     ] {
         assert!(outcome.stdout.contains(text), "{text:?} is missing in: {}", outcome.stdout);
     }
-    assert_eq!(workplace.files(), ["scene.toml"]);
+    let bytes =
+        |outcome: &Outcome| outcome.stdout.split("on a device: ").nth(1).unwrap().split(',').next().unwrap().to_owned();
+    let set = workplace.render(&["--set", "render.width=99"]);
+    assert!(set.stderr.contains(&format!("; {} on the device", bytes(&outcome))), "{}", set.stderr);
+    let listed = workplace.run(&["inspect", "scene.toml"]);
+    assert!(!listed.stdout.contains("adapters: 0") && listed.stdout.contains("\n  0: "), "{}", listed.stdout);
+}
+
+#[test]
+fn frames_are_numbered_and_the_same_alone_or_in_a_run() {
+    let track = "[[animation.tracks]]\nkey = \"objects.ball.sphere.center\"\nframes = [1, 3]\nvalues = [[0, 0.4, 0], [0.4, 0.5, 0]]";
+    let workplace = Workplace::new(&format!("{BALL}\n{track}"));
+    workplace.render(&["--frames", "1..3", "-o", "a.exr", "--stats", "a.json", "--energy-maps", "maps"]);
+    let run =
+        ["a.0001.exr", "a.0001.json", "a.0002.exr", "a.0002.json", "a.0003.exr", "a.0003.json", "maps", "scene.toml"];
+    assert_eq!(workplace.files(), run);
+    workplace.render(&["--frames", "2..2", "-o", "b.exr", "--energy-maps", "alone"]);
+    let bytes = |name: &str| fs::read(workplace.path(name)).unwrap();
+    assert!(bytes("a.0002.exr") == bytes("b.0002.exr"), "the picture of a frame depends on those before");
+    assert!(bytes("maps/floor.0002.exr") == bytes("alone/floor.0002.exr"), "its maps do");
+    assert!(bytes("a.0001.exr") != bytes("a.0002.exr") && bytes("a.0002.exr") != bytes("a.0003.exr"), "nothing moves");
+
+    fs::write(workplace.path("still.toml"), BALL).unwrap();
+    workplace.run(&["still.toml", "--frames", "1..2"]).assert_refused(2, &["still.toml", "has no [animation]"]);
+    workplace.run(&["a.glb", "--frames", "1..2"]).assert_refused(2, &["a.glb: --frames goes with a scene file"]);
+    workplace.run(&["scene.toml", "--frames", "2"]).assert_refused(2, &["--frames", "such as 1..48"]);
+}
+
+#[test]
+fn adapters_and_memory_are_chosen() {
+    let workplace = Workplace::new(BALL);
+    workplace.run(&["scene.toml", "--adapter", "99"]).assert_refused(1, &["there is no GPU adapter 99; there are: 0 "]);
+    workplace.run(&["scene.toml", "--adapter", "abacus"]).assert_refused(1, &["contains \"abacus\"; there are: 0 "]);
+    workplace.render(&["--adapter", "0", "--device-memory", "1GiB"]);
+    workplace.run(&["scene.toml", "--device-memory", "100kB"]).assert_refused(
+        1,
+        &[
+            "the bounding volume hierarchy's nodes need ",
+            "of the 100000 that may be taken on the device",
+            "use fewer triangles",
+        ],
+    );
+    workplace.run(&["scene.toml", "--device-memory", "some"]).assert_refused(2, &["--device-memory", "512MiB"]);
+    // Maps whose size the scene leaves open shrink to a quarter of the limit.
+    let free = ["--set", "render={ width = 256, height = 256, samples = 1, photons = 1000 }", "--stats", "stats.json"];
+    let texels = |flags: &[&str]| {
+        workplace.render(&[&free[..], flags].concat());
+        workplace.json("stats.json")["maps"][0]["texels"].as_u64().unwrap()
+    };
+    let (many, few) = (texels(&[]), texels(&["--device-memory", "11MB"]));
+    assert!(few < many && few * 24 <= 2_750_000, "{few} and {many} texels");
+}
+
+#[test]
+fn shells_and_manuals_know_every_flag() {
+    let workplace = Workplace::new(BALL);
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let outcome = workplace.run(&["completions", shell]);
+        assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
+        assert!(outcome.stdout.contains("inspect") && outcome.stdout.contains("time-limit"), "{shell}");
+    }
+    workplace.run(&["completions", "cmd"]).assert_refused(2, &["bash", "fish"]);
+    assert_eq!(workplace.run(&["man", "new/pages"]).status, Some(0));
+    let page = |name: &str| fs::read_to_string(workplace.path(&format!("new/pages/{name}"))).unwrap();
+    assert!(page("diacaustic.1").contains("Renders glass and the caustics"));
+    assert!(page("diacaustic-render.1").contains("energy\\-maps"));
+    workplace.run(&["man", "scene.toml"]).assert_refused(1, &["scene.toml: the manual cannot be written"]);
 }
 
 #[test]
@@ -374,12 +446,13 @@ fn too_large_for_any_device() -> Workplace {
 fn a_map_beyond_the_device_exits_with_1_and_names_both_sizes() {
     let workplace = too_large_for_any_device();
     let outcome = workplace.run(&["scene.toml"]);
-    let asked = 2 * 2 * 24 * 8192u64.pow(2);
-    outcome
-        .assert_refused(1, &["the energy maps need", &format!("{asked} bytes"), "the device allows", "lower map_size"]);
-    let available = outcome.stderr.split("the device allows ").nth(1).and_then(|rest| rest.split(':').next());
-    let available: u64 = available.unwrap().parse().unwrap();
-    assert!(available >= 128 << 20 && available < asked, "{available} bytes are said to be allowed");
+    outcome.assert_refused(1, &["the energy maps of each light group take ", "the device allows ", "lower map_size"]);
+    let bytes_after = |text: &str| {
+        let rest = outcome.stderr.split(text).nth(1).unwrap();
+        rest.split(|c: char| !c.is_ascii_digit()).next().unwrap().parse::<u64>().unwrap()
+    };
+    let (asked, available) = (bytes_after("light group take "), bytes_after("the device allows "));
+    assert!(available >= 128 << 20 && available < asked, "{asked} bytes are said to be asked, {available} allowed");
 }
 
 #[test]
@@ -400,11 +473,11 @@ fn a_failing_run_leaves_the_files_of_the_last_one() {
 fn a_full_disk_exits_with_1_and_leaves_the_files_after_it() {
     let workplace = Workplace::new(BALL);
     std::os::unix::fs::symlink("/dev/full", workplace.path("full.png")).unwrap();
-    fs::write(workplace.path("kept.exr"), "before").unwrap();
-    let outcome = workplace.run(&["scene.toml", "--output", "full.png", "--output", "kept.exr"]);
+    fs::write(workplace.path("kept.json"), "before").unwrap();
+    let outcome = workplace.run(&["scene.toml", "--output", "full.png", "--stats", "kept.json"]);
     outcome.assert_refused(1, &["full.png: the file cannot be written", "caused by", "No space left"]);
-    assert_eq!(fs::read_to_string(workplace.path("kept.exr")).unwrap(), "before");
-    assert_eq!(workplace.files(), ["full.png", "kept.exr", "scene.toml"]);
+    assert_eq!(fs::read_to_string(workplace.path("kept.json")).unwrap(), "before");
+    assert_eq!(workplace.files(), ["full.png", "kept.json", "scene.toml"]);
 }
 
 #[test]

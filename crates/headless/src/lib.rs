@@ -10,22 +10,54 @@
 //! # Ok::<(), diacaustic_headless::Error>(())
 //! ```
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::{
+    convert::Infallible,
+    str::FromStr,
+    sync::{Arc, Mutex, PoisonError},
+};
 
 use diacaustic::Renderer;
 
 /// Which adapter to open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenOptions {
-    /// A part of the adapter's name, in any case; if none, `WGPU_ADAPTER_NAME`, and if that is not set, wgpu's choice.
-    pub adapter_name: Option<String>,
+    /// Which of the system's adapters; if none, the one whose name `WGPU_ADAPTER_NAME` is a part of, and if that is not set, wgpu's choice.
+    pub adapter: Option<AdapterChoice>,
     /// Which adapter wgpu should choose.
     pub power_preference: wgpu::PowerPreference,
 }
 
 impl Default for OpenOptions {
     fn default() -> Self {
-        Self { adapter_name: None, power_preference: wgpu::PowerPreference::HighPerformance }
+        Self { adapter: None, power_preference: wgpu::PowerPreference::HighPerformance }
+    }
+}
+
+/// One of the system's adapters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The first whose name has this part, in any case.
+    Name(String),
+    /// Its place in the list of [`adapters`].
+    Number(usize),
+}
+
+impl FromStr for AdapterChoice {
+    type Err = Infallible;
+
+    /// A number, or else a part of a name.
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Number))
+    }
+}
+
+impl AdapterChoice {
+    /// Which of the names it stands for, if any.
+    fn among(&self, found: &[String]) -> Option<usize> {
+        match self {
+            Self::Name(part) => found.iter().position(|name| name.to_lowercase().contains(&part.to_lowercase())),
+            Self::Number(number) => (*number < found.len()).then_some(*number),
+        }
     }
 }
 
@@ -65,10 +97,18 @@ pub enum Error {
     )]
     NoAdapter(#[source] wgpu::RequestAdapterError),
     /// No adapter has the name asked for.
-    #[error("no GPU adapter's name contains {name:?}; there are: {}", found.join(", "))]
+    #[error("no GPU adapter's name contains {name:?}; there are: {}", list(found))]
     NoSuchAdapter {
         /// The part of a name that was asked for.
         name: String,
+        /// The adapters that there are.
+        found: Vec<String>,
+    },
+    /// There are not so many adapters.
+    #[error("there is no GPU adapter {number}; there are: {}", list(found))]
+    NoAdapterNumber {
+        /// The number that was asked for.
+        number: usize,
         /// The adapters that there are.
         found: Vec<String>,
     },
@@ -90,6 +130,22 @@ pub enum Error {
     },
 }
 
+/// The adapters' names with their numbers.
+fn list(found: &[String]) -> String {
+    let numbered = found.iter().enumerate().map(|(number, name)| format!("{number} {name}"));
+    numbered.collect::<Vec<_>>().join(", ")
+}
+
+/// What the system's adapters say about themselves, in the order of their numbers. Blocks: up to seconds, while drivers load.
+pub fn adapters() -> Vec<wgpu::AdapterInfo> {
+    let found = pollster::block_on(instance().enumerate_adapters(wgpu::Backends::all()));
+    found.iter().map(wgpu::Adapter::get_info).collect()
+}
+
+fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+}
+
 /// Opens an adapter and a device on it. Blocks: up to seconds, while drivers load.
 ///
 /// # Errors
@@ -99,8 +155,7 @@ pub fn open(options: &OpenOptions) -> Result<Gpu, Error> {
 }
 
 async fn open_async(options: &OpenOptions) -> Result<Gpu, Error> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapter = choose_adapter(&instance, options).await?;
+    let adapter = choose_adapter(&instance(), options).await?;
     let adapter_info = adapter.get_info();
     let descriptor = wgpu::DeviceDescriptor {
         label: Some("diacaustic"),
@@ -121,15 +176,17 @@ async fn open_async(options: &OpenOptions) -> Result<Gpu, Error> {
 
 async fn choose_adapter(instance: &wgpu::Instance, options: &OpenOptions) -> Result<wgpu::Adapter, Error> {
     let from_environment = || std::env::var("WGPU_ADAPTER_NAME").ok().filter(|name| !name.is_empty());
-    if let Some(name) = options.adapter_name.clone().or_else(from_environment) {
+    if let Some(choice) = options.adapter.clone().or_else(|| from_environment().map(AdapterChoice::Name)) {
         let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
         let found: Vec<_> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
-        let wanted = name.to_lowercase();
-        if let Some(index) = found.iter().position(|name| name.to_lowercase().contains(&wanted)) {
+        if let Some(index) = choice.among(&found) {
             return Ok(adapters.swap_remove(index));
         }
         if !found.is_empty() {
-            return Err(Error::NoSuchAdapter { name, found });
+            return Err(match choice {
+                AdapterChoice::Name(name) => Error::NoSuchAdapter { name, found },
+                AdapterChoice::Number(number) => Error::NoAdapterNumber { number, found },
+            });
         }
     }
     let request = wgpu::RequestAdapterOptions { power_preference: options.power_preference, ..Default::default() };
@@ -166,6 +223,16 @@ mod tests {
         assert_eq!(asked.max_bind_groups, needed.max_bind_groups);
         let small = wgpu::Limits { max_buffer_size: 1, ..needed.clone() };
         assert_eq!(device_limits(&small), needed);
+    }
+
+    #[test]
+    fn adapters_are_chosen_by_name_or_number() {
+        let found = ["NVIDIA A".to_owned(), "llvmpipe (LLVM 15)".to_owned()];
+        let chosen =
+            ["nvidia", "LLVM", "1", "2", "intel"].map(|text| text.parse().map(|c: AdapterChoice| c.among(&found)));
+        assert_eq!(chosen, [Some(0), Some(1), Some(1), None, None].map(Ok));
+        let error = Error::NoAdapterNumber { number: 2, found: found.into() };
+        assert_eq!(error.to_string(), "there is no GPU adapter 2; there are: 0 NVIDIA A, 1 llvmpipe (LLVM 15)");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use self::{
     canvas::{Canvas, Color, LETTER},
     scale::Scale,
 };
-use crate::{Error, Irradiance, png::write_bytes};
+use crate::{Error, Irradiance, png::write_rgb8};
 
 /// The least width of a map in the picture, pixels: smaller maps are enlarged by a whole factor.
 const LEAST_WIDTH: u32 = 512;
@@ -19,7 +19,9 @@ const GAP: u32 = 8;
 const BAR: u32 = 16;
 /// Letters beside the bar.
 const TICK_LETTERS: u32 = 8;
-/// Width of a picture from which on text is enlarged.
+/// The least factor by which text is enlarged.
+const LEAST_TEXT: u32 = 2;
+/// Pixels of a map for each further factor.
 const WIDTH_PER_TEXT_SIZE: u32 = 1536;
 
 const PAPER: Color = [250, 250, 250];
@@ -45,7 +47,7 @@ pub(crate) fn write_false_colors(path: &Path, map: &Irradiance<'_>) -> Result<()
         draw_map(&mut canvas, map, texels, &scale, [plan.gap, top], plan.enlarged);
     }
     draw_scale(&mut canvas, &scale, &plan);
-    write_bytes(path, plan.width, plan.height, canvas.bytes())
+    write_rgb8(path, plan.width, plan.height, canvas.bytes())
 }
 
 /// Where things stand in the picture, pixels.
@@ -68,7 +70,7 @@ impl Plan {
     fn new(map: &Irradiance<'_>, layers: u32) -> Self {
         let enlarged = LEAST_WIDTH.div_ceil(map.width).max(1);
         let (map_width, map_height) = (map.width * enlarged, map.height * enlarged);
-        let text = 1 + map_width / WIDTH_PER_TEXT_SIZE;
+        let text = LEAST_TEXT + map_width / WIDTH_PER_TEXT_SIZE;
         let (gap, line) = (GAP * text, (LETTER + 4) * text);
         let caption = if layers > 1 { line } else { 0 };
         Self {
@@ -117,7 +119,7 @@ fn draw_map(
 fn draw_scale(canvas: &mut Canvas, scale: &Scale, plan: &Plan) {
     let (left, top) = (plan.map_width + 2 * plan.gap, plan.top_of(0));
     let kind = if scale.is_logarithmic() { "logarithmic" } else { "linear" };
-    let title = format!("irradiance, W/m², mean of the channels, {kind} scale");
+    let title = format!("W/m^2, mean of channels, {kind}");
     canvas.text([plan.gap, plan.gap], &title, plan.text, INK);
     let height = plan.map_height.max(1);
     for y in 0..height {

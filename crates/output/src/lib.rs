@@ -36,8 +36,8 @@ pub use lightmaps::LightmapTexels;
 pub use object_folder::ObjectFolder;
 pub use open_exr::{Channel, Values, write_exr, write_exr_with_channels};
 pub use picture::{Format, Picture, write_picture};
-pub use png::{Display, write_png};
-pub use replace::check_writable;
+pub use png::{Display, write_png, write_rgb8};
+pub use replace::{check_writable, is_device_or_pipe, replace, write_text};
 pub use statistics::{
     Adapter, CameraRays, LightLedger, Map, Photons, SceneSize, Seconds, Statistics, write_statistics,
 };

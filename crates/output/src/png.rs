@@ -24,6 +24,13 @@ impl Display {
     }
 }
 
+impl Display {
+    /// A picture's pixels as 8-bit sRGB, three bytes each, row by row.
+    pub fn encode(&self, picture: &Picture<'_>) -> Vec<u8> {
+        picture.pixels.as_flattened().iter().map(|&channel| self.byte(channel)).collect()
+    }
+}
+
 /// Writes a picture as PNG: 8 bits a channel, sRGB.
 ///
 /// # Errors
@@ -33,8 +40,14 @@ pub fn write_png(path: &Path, picture: &Picture<'_>, display: &Display) -> Resul
     replace(path, |file| file.write_all(&bytes))
 }
 
-/// Writes bytes of red, green and blue as PNG.
-pub(crate) fn write_bytes(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<(), Error> {
+/// Writes bytes of sRGB, three for each pixel, row by row from the top left, as PNG.
+///
+/// # Errors
+/// If the pixels are not as many as the size says, or the file cannot be written.
+pub fn write_rgb8(path: &Path, width: u32, height: u32, bytes: &[u8]) -> Result<(), Error> {
+    if bytes.len() as u64 != 3 * u64::from(width) * u64::from(height) {
+        return Err(Error::Shape { path: path.to_owned(), width, height, found: bytes.len() / 3 });
+    }
     replace(path, |file| PngEncoder::new(file).write_image(bytes, width, height, ExtendedColorType::Rgb8))
 }
 

@@ -9,10 +9,10 @@ use std::{
 use crate::Error;
 
 /// Writes a file beside its place and moves it there once it is complete and on the disk.
-pub(crate) fn replace<E>(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>,
-) -> Result<(), Error>
+///
+/// # Errors
+/// If it cannot be written, or `write` fails; what was there before then stays.
+pub fn replace<E>(path: &Path, write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>) -> Result<(), Error>
 where
     E: Into<Box<dyn std::error::Error + Send + Sync>>,
 {
@@ -28,6 +28,14 @@ where
     draft.as_file().sync_all().map_err(|error| failed(error.into()))?;
     draft.persist(&target).map_err(|error| failed(error.error.into()))?;
     Ok(())
+}
+
+/// Writes a text file.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_text(path: &Path, text: &str) -> Result<(), Error> {
+    replace(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// Checks, without changing anything, that a file can be written: its folder exists and takes new files.
@@ -60,7 +68,8 @@ where
     Ok(buffered.flush()?)
 }
 
-fn is_device_or_pipe(path: &Path) -> bool {
+/// Whether a path leads to neither a file nor a folder, so that what is written cannot be replaced.
+pub fn is_device_or_pipe(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 

@@ -17,6 +17,8 @@ pub struct Statistics {
     pub seed: u32,
     /// Whether the time limit left photons or samples out.
     pub time_limit_reached: bool,
+    /// Whether a signal, such as that of Ctrl-C, left photons or samples out.
+    pub interrupted: bool,
     /// The adapter.
     pub adapter: Adapter,
     /// What the scene weighs.

@@ -103,8 +103,8 @@ impl Specular {
                 (Self::ThinWalled { eta: ior / f64::from(own), tint: tinted(tint) }, 0.0)
             }
             MaterialKind::Coated { ior: own, roughness, .. } => (Self::Coat { eta: ior / f64::from(own) }, roughness),
-            MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
-                let f0 = base::metallic_f0(colored(base_color), f64::from(metallic) * factors.metallic);
+            MaterialKind::MetallicRoughness { base_color, reflectance, metallic, roughness } => {
+                let f0 = base::metallic_f0(colored(base_color), f64::from(metallic) * factors.metallic, reflectance);
                 (Self::Schlick { f0 }, roughness)
             }
         }

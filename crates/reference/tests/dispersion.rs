@@ -12,7 +12,8 @@ use diacaustic_reference::photons::{AimDisc, Emission, Event, Ledger, PhotonJob,
 use diacaustic_reference::random::PhotonNumbers;
 use diacaustic_reference::spectrum::Spectrum;
 use diacaustic_scene::{
-    Dispersion, Light, LightKind, MaterialKind, Mesh, Scene, WAVELENGTH_STEPS, substance, wavelength_table,
+    Dispersion, Light, LightKind, MaterialKind, Mesh, PLASTIC_REFLECTANCE, Scene, WAVELENGTH_STEPS, substance,
+    wavelength_table,
 };
 use glam::{DVec3, Vec3};
 
@@ -258,7 +259,12 @@ fn photons_bring_what_light_tracing_finds_behind_a_dispersive_ball() {
 /// A dispersive ball before surfaces of all colours, and lights of two.
 fn colourful() -> Scene {
     let gold = MaterialKind::Conductor { eta: Vec3::new(0.2, 0.4, 1.4), k: Vec3::new(3.1, 2.4, 1.9), roughness: 0.4 };
-    let metal = MaterialKind::MetallicRoughness { base_color: Vec3::new(0.2, 0.5, 0.9), metallic: 0.4, roughness: 0.4 };
+    let metal = MaterialKind::MetallicRoughness {
+        base_color: Vec3::new(0.2, 0.5, 0.9),
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 0.4,
+        roughness: 0.4,
+    };
     let green = MaterialKind::Diffuse { albedo: Vec3::new(0.2, 0.7, 0.3) };
     let tinted = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::new(0.9, 0.9, 0.4) };
     let cube = |half: f32| block(Vec3::splat(-half), Vec3::splat(half));

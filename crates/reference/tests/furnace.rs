@@ -4,7 +4,7 @@ mod shapes;
 
 use diacaustic_reference::camera::radiance;
 use diacaustic_reference::geometry::World;
-use diacaustic_scene::{Dispersion, MaterialKind, Mesh, Scene};
+use diacaustic_scene::{Dispersion, MaterialKind, Mesh, PLASTIC_REFLECTANCE, Scene};
 use glam::{DVec3, Vec3};
 
 use shapes::{ball, block, flat, floor, glass, named, scene};
@@ -114,8 +114,18 @@ fn shown(kind: MaterialKind) -> [(f64, f64); 2] {
 fn white_bases_give_back_all_that_enters() {
     for roughness in [0.0, 0.03, 0.1] {
         let coated = MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness };
-        let plastic = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 0.0, roughness };
-        let metal = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness };
+        let plastic = MaterialKind::MetallicRoughness {
+            base_color: Vec3::ONE,
+            reflectance: PLASTIC_REFLECTANCE,
+            metallic: 0.0,
+            roughness,
+        };
+        let metal = MaterialKind::MetallicRoughness {
+            base_color: Vec3::ONE,
+            reflectance: PLASTIC_REFLECTANCE,
+            metallic: 1.0,
+            roughness,
+        };
         for kind in [coated, plastic, metal] {
             for (seen, deviation) in shown(kind.clone()) {
                 assert!((seen - 1.0).abs() < 4.0 * deviation + 2e-3, "{kind:?}: {seen} ± {deviation}");
@@ -129,7 +139,12 @@ fn white_bases_give_back_all_that_enters() {
 fn rough_gloss_of_receivers_loses_little() {
     for roughness in [0.3, 0.6, 1.0] {
         let coated = MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness };
-        let plastic = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 0.0, roughness };
+        let plastic = MaterialKind::MetallicRoughness {
+            base_color: Vec3::ONE,
+            reflectance: PLASTIC_REFLECTANCE,
+            metallic: 0.0,
+            roughness,
+        };
         for (kind, least) in [(coated, 0.9), (plastic, 0.9)] {
             let [(by_lobes, a), (by_sampling, b)] = shown(kind.clone());
             assert!((least..1.005).contains(&by_lobes), "{kind:?}: {by_lobes}");

@@ -11,7 +11,9 @@ use diacaustic_reference::geometry::{Sphere, World};
 use diacaustic_reference::light_tracing::{Region, irradiance_on};
 use diacaustic_reference::photons::{AimDisc, Emission, Ledger, PhotonJob, trace};
 use diacaustic_reference::texture::texture_at;
-use diacaustic_scene::{LightKind, MaterialKind, Mesh, NormalMap, Scene, Texture, TextureFilter, Wrap};
+use diacaustic_scene::{
+    LightKind, MaterialKind, Mesh, NormalMap, PLASTIC_REFLECTANCE, Scene, Texture, TextureFilter, Wrap,
+};
 use glam::{Affine2, Affine3A, DVec2, DVec3, Vec2, Vec3};
 
 use shapes::{ball, diffuse, flat, glass, light, named, pane, parallel, picture, plate, scene, speckle};
@@ -96,7 +98,12 @@ fn a_texel_is_worth_the_material_that_it_makes() {
         [
             MaterialKind::Phong { ambient: color, diffuse: color, specular: Vec3::splat(0.1), shininess: 8.0 },
             MaterialKind::Coated { albedo: color, ior: 1.5, roughness },
-            MaterialKind::MetallicRoughness { base_color: color, metallic, roughness },
+            MaterialKind::MetallicRoughness {
+                base_color: color,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic,
+                roughness,
+            },
             MaterialKind::ThinWalled { ior: 1.5, tint: color },
         ]
     };
@@ -305,7 +312,12 @@ fn textured_rough_metal_shines_on_the_floor_alike() {
         let wall = Mesh::rectangle(Vec3::new(0.5, 0.4, 0.0), 0.8 * Vec3::Z, 0.8 * Vec3::Y);
         vec![(plate(0.0, 0.6), diffuse(0.5), Vec3::ZERO), (wall, kind, Vec3::ZERO)]
     };
-    let metal = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 0.7 };
+    let metal = MaterialKind::MetallicRoughness {
+        base_color: Vec3::ONE,
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 1.0,
+        roughness: 0.7,
+    };
     let mut scene = scene(parts(metal), vec![light(Vec3::new(-0.8, 1.2, 0.2), 0.5, 10.0)]);
     let around = Sphere { center: DVec3::new(0.5, 0.4, 0.0), radius: 0.4 * 2f64.sqrt() };
     let plain = three_ways(&scene, DVec3::Y, around, 20)[2].mean.x;
@@ -319,7 +331,12 @@ fn textured_rough_metal_shines_on_the_floor_alike() {
 
 #[test]
 fn ledger_closes_with_pictures_everywhere() {
-    let varnish = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 0.5 };
+    let varnish = MaterialKind::MetallicRoughness {
+        base_color: Vec3::ONE,
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 1.0,
+        roughness: 0.5,
+    };
     let lens = Mesh::sphere(Vec3::new(0.0, 0.6, 0.0), 0.4, 4);
     let screen = Mesh::sphere(Vec3::new(0.2, 0.6, 0.6), 0.3, 4);
     let parts = vec![

@@ -15,6 +15,11 @@ pub enum Emission {
     Aimed(Vec<AimTarget>),
     /// A sphere, in every direction: a caster is too near for discs to pay.
     Unaimed,
+    /// The light of the profile `paper`, from its position in every direction, by equation 1.
+    Paper {
+        /// Energy of each ray.
+        energy: Vec3,
+    },
     /// Any other light, toward or across bounding spheres of casters.
     Toward(Vec<AimTarget>),
 }
@@ -48,7 +53,7 @@ impl Emission {
     pub fn targets(&self) -> &[AimTarget] {
         match self {
             Self::Aimed(targets) | Self::Toward(targets) => targets,
-            Self::Unaimed => &[],
+            Self::Unaimed | Self::Paper { .. } => &[],
         }
     }
 
@@ -58,6 +63,7 @@ impl Emission {
         let widest = |one: &dyn Fn(&AimTarget) -> f32| self.targets().iter().map(one).fold(0.0, f32::max);
         match (self, emitter.bounds) {
             (Self::Unaimed, _) => emitter.flux.max_element(),
+            (Self::Paper { energy }, _) => energy.max_element(),
             (Self::Aimed(_), Some(light)) => {
                 let one = |disc: &AimTarget| {
                     let distance = Vec3::from(disc.center).distance(light.center);

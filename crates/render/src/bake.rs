@@ -104,13 +104,10 @@ pub(crate) fn bake(
         lightmap.indirect[index] = sums.indirect.map(|sum| sum / sums.weight);
     }
     lightmap.caustic = energy_map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
-    // Of a map of a stated size, whose texels are the lightmap's, each one with an area holds light.
-    let mut has_area = is_sampled.clone();
-    if energy_map.areas.len() == has_area.len() {
-        has_area.iter_mut().zip(&energy_map.areas).for_each(|(holds, &area)| *holds |= area > 0.0);
-    }
+    let holds_surface: Vec<bool> = lightmap.places.iter().map(Option::is_some).collect();
+    let holds_surface = holds_surface.repeat(layout.layers as usize);
     let Lightmap { direct, caustic, indirect, .. } = &mut lightmap;
-    for (texels, holds) in [(direct, &is_sampled), (indirect, &is_sampled), (caustic, &has_area)] {
+    for (texels, holds) in [(direct, &is_sampled), (indirect, &is_sampled), (caustic, &holds_surface)] {
         for (layer, holds) in texels.chunks_mut(texels_in_layer).zip(holds.chunks(texels_in_layer)) {
             spread_outwards(layer, layout.width as usize, holds);
         }

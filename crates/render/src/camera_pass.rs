@@ -8,6 +8,7 @@ use crate::{
     Error, Film, LayerImage,
     features::{Features, Pipelines},
     film::filter_inverse_cdf,
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
@@ -214,14 +215,27 @@ impl Samples {
         })
     }
 
-    /// What samples accumulate in.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 5] {
-        [&self.film, &self.halves, &self.layers.light, &self.layers.data, &self.layers.groups]
+    /// What samples accumulate in, by name.
+    pub fn accumulated(&self) -> [(&'static str, &wgpu::Buffer); 5] {
+        let LayerSums { light, data, groups, .. } = &self.layers;
+        [
+            ("film", &self.film),
+            ("first samples", &self.halves),
+            ("layers of light", light),
+            ("layers of data", data),
+            ("layers of groups", groups),
+        ]
+    }
+
+    /// Adds what samples depend on beside the scene: the view and how it is sampled.
+    pub fn add_to(&self, fingerprint: &mut Fingerprint) {
+        fingerprint.digest("the camera", &[self.camera]);
+        fingerprint.digest("the camera's settings", &[self.paths]);
     }
 
     /// Bytes on the device.
     pub fn bytes(&self) -> u64 {
-        self.buffers().iter().map(|buffer| buffer.size()).sum()
+        self.accumulated().iter().map(|(_, buffer)| buffer.size()).sum()
     }
 
     /// Submits a further sample of every pixel.
@@ -382,7 +396,8 @@ fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {
         sphere_count: lights.sphere_count as u32,
         first_sky_light: lights.first_sky as u32,
         max_bounces: settings.max_bounces,
-        exposure: 1.0 / (index * index),
+        // Radiance follows the index, but not in the profile `paper`.
+        exposure: if settings.paper.is_some() { 1.0 } else { 1.0 / (index * index) },
     }
 }
 

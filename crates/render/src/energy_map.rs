@@ -23,27 +23,31 @@ pub struct EnergyMap {
     pub units_per_watt: f64,
     /// Photons that the sums are of, over every light.
     pub photons: u64,
+    /// The size of the map by which the profile `paper` divides sums of energy, of which each photon brings the same, however many there are;
+    /// none where photons share the light's flux.
+    pub paper_size: Option<f64>,
 }
 
 /// The most points along each side of a resampled texel at which a map is looked at.
 const MOST_POINTS: f64 = 64.0;
 
 impl EnergyMap {
-    /// Flux collected by a texel, W.
+    /// Flux collected by a texel, W; in the profile `paper`, energy.
     ///
     /// # Panics
     /// If `texel` is out of range.
     pub fn flux(&self, texel: usize) -> DVec3 {
-        DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * self.photons.max(1) as f64)
+        let photons = if self.paper_size.is_some() { 1 } else { self.photons.max(1) };
+        DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * photons as f64)
     }
 
-    /// Irradiance of a texel, W/m²; 0 where it holds no surface.
+    /// Irradiance of a texel, W/m²; 0 where it holds no surface. In the profile `paper`, energy over the map's size.
     ///
     /// # Panics
     /// If `texel` is out of range.
     pub fn irradiance(&self, texel: usize) -> DVec3 {
         let area = self.areas[texel];
-        if area > 0.0 { self.flux(texel) / area } else { DVec3::ZERO }
+        if area > 0.0 { self.flux(texel) / self.paper_size.unwrap_or(area) } else { DVec3::ZERO }
     }
 
     /// Irradiance of a place of a layer's plane, in the layout's texels, W/m²: between the texels of its tile, as the picture shows it; 0

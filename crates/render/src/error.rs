@@ -25,6 +25,20 @@ pub enum Error {
         /// What would make it fit.
         remedy: &'static str,
     },
+    /// A scene needs more than [`RendererOptions::memory`](crate::RendererOptions::memory) allows.
+    #[error("{what} need {asked} bytes, and of the {limit} that may be taken on the device {left} are left: {remedy}")]
+    OverMemoryLimit {
+        /// What does not fit.
+        what: &'static str,
+        /// Bytes that it needs.
+        asked: u64,
+        /// Bytes that are left for it.
+        left: u64,
+        /// Bytes that are allowed in all.
+        limit: u64,
+        /// What would make it fit.
+        remedy: &'static str,
+    },
     /// The energy maps are larger than the device allows.
     #[error(
         "the energy maps of each light group take {asked} bytes and the device allows {available}: lower map_size, or \
@@ -85,6 +99,19 @@ pub enum Error {
         /// How many there are.
         limit: u64,
     },
+    /// What should be a saved state is none.
+    #[error("the saved state cannot be used: {0}")]
+    BadState(String),
+    /// A saved state is of something else than what is set.
+    #[error("the saved state is of another render: {}", difference(what, saved, found))]
+    OtherState {
+        /// What differs.
+        what: String,
+        /// What it is in the saved state, where that can be said in words.
+        saved: Option<String>,
+        /// What it is here.
+        found: Option<String>,
+    },
     /// An object was named that the scene does not hold.
     #[error("object {index} was asked for and the scene holds {count}")]
     NoSuchObject {
@@ -93,4 +120,11 @@ pub enum Error {
         /// Objects in the scene.
         count: usize,
     },
+}
+
+fn difference(what: &str, saved: &Option<String>, found: &Option<String>) -> String {
+    match (saved, found) {
+        (Some(saved), Some(found)) => format!("its {what} is {saved}, and here it is {found}"),
+        _ => format!("{what} are not the same"),
+    }
 }

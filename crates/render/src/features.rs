@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use diacaustic_scene::{Material, MaterialKind, RenderSettings, SMOOTH, Scene};
-use diacaustic_shaders::{Kernel, light_kind};
+use diacaustic_scene::{Material, MaterialKind, PaperRefraction, RenderSettings, SMOOTH, Scene};
+use diacaustic_shaders::{Kernel, light_kind, paper_refraction};
 
 use crate::{
     gpu::Gpu,
@@ -26,8 +26,10 @@ pub(crate) struct Features {
     distant_lights: bool,
     /// An environment.
     environment: bool,
-    /// Pictures on surfaces.
+    /// Pictures or colours that make surfaces differ from point to point.
     textures: bool,
+    /// Colours at vertices.
+    vertex_colors: bool,
     /// Surfaces that rays may pass as if they were not there.
     holes: bool,
     /// Light of single wavelengths.
@@ -38,6 +40,8 @@ pub(crate) struct Features {
     guide: bool,
     /// Whether photons have footprints.
     footprints: bool,
+    /// The 2016 paper's model of light, and how it refracts.
+    paper_refraction: u32,
     /// Whether camera paths note which texels they see.
     sightings: bool,
     /// Light kept apart by how it came.
@@ -61,12 +65,14 @@ impl Features {
             surface_lights: shines(&[light_kind::SURFACE]),
             distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
             environment: shines(&[light_kind::ENVIRONMENT]),
-            textures: scene.materials.iter().any(|material| material.textures.any()),
+            textures: scene.has_vertex_colors() || scene.materials.iter().any(|material| material.textures.any()),
+            vertex_colors: scene.has_vertex_colors(),
             holes: scene.materials.iter().any(Material::has_holes),
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
             guide: false,
             footprints: false,
+            paper_refraction: paper_constant(&scene.settings),
             sightings: false,
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
@@ -82,10 +88,10 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
-        let Self { gloss, conductors, textures, holes, dispersion, .. } = self;
+        let Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, .. } = self;
         let RenderSettings { guiding: guide, footprints, .. } = *settings;
         let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
-        Self { gloss, conductors, textures, holes, dispersion, ..photons }
+        Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -113,11 +119,13 @@ impl Features {
             ("has_distant_lights", f64::from(self.distant_lights)),
             ("has_environment", f64::from(self.environment)),
             ("has_textures", f64::from(self.textures)),
+            ("has_vertex_colors", f64::from(self.vertex_colors)),
             ("has_holes", f64::from(self.holes)),
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),
+            ("paper_refraction", f64::from(self.paper_refraction)),
             ("notes_sightings", f64::from(self.sightings)),
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),
@@ -125,6 +133,14 @@ impl Features {
             ("has_halves", f64::from(self.halves)),
         ];
         all.into_iter().filter(|(name, _)| kernel.source.contains(&format!("override {name}"))).collect()
+    }
+}
+
+fn paper_constant(settings: &RenderSettings) -> u32 {
+    match settings.paper.map(|paper| paper.refraction) {
+        None => paper_refraction::NONE,
+        Some(PaperRefraction::Printed) => paper_refraction::PRINTED,
+        Some(PaperRefraction::Exact) => paper_refraction::EXACT,
     }
 }
 

@@ -1,5 +1,10 @@
 //! Buffers, pipelines and read-back on the application's device.
 
+use std::sync::{
+    Arc,
+    atomic::{AtomicU64, Ordering},
+};
+
 use bytemuck::Pod;
 use diacaustic_shaders::{Kernel, RECORDS_WIDTH_BITS};
 use wgpu::util::DeviceExt as _;
@@ -11,6 +16,30 @@ use crate::Error;
 pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    /// What its buffers and textures may take, if that is limited.
+    pub limit: Option<MemoryLimit>,
+}
+
+/// A limit on what buffers and textures may take together.
+#[derive(Clone, Debug)]
+pub(crate) struct MemoryLimit {
+    bytes: u64,
+    taken: Arc<AtomicU64>,
+}
+
+impl MemoryLimit {
+    pub fn new(bytes: u64) -> Self {
+        Self { bytes, taken: Arc::default() }
+    }
+
+    /// Takes a part, or refuses it.
+    fn take(&self, purpose: Purpose, asked: u64) -> Result<(), Error> {
+        let left = self.bytes.saturating_sub(self.taken.fetch_add(asked, Ordering::Relaxed));
+        if asked <= left {
+            return Ok(());
+        }
+        Err(Error::OverMemoryLimit { what: purpose.what, asked, left, limit: self.bytes, remedy: purpose.remedy })
+    }
 }
 
 /// How a binding is used.
@@ -35,6 +64,15 @@ pub(crate) struct Purpose {
 }
 
 impl Gpu {
+    /// The same device with a limit on what is made from now on.
+    pub fn limited_to(&self, bytes: Option<u64>) -> Self {
+        Self { limit: bytes.map(MemoryLimit::new), ..self.clone() }
+    }
+
+    fn take(&self, purpose: Purpose, bytes: u64) -> Result<(), Error> {
+        self.limit.as_ref().map_or(Ok(()), |limit| limit.take(purpose, bytes))
+    }
+
     /// Refuses a storage buffer that the device cannot bind.
     pub fn check_size(&self, purpose: Purpose, asked: u64) -> Result<(), Error> {
         let limits = self.device.limits();
@@ -50,6 +88,7 @@ impl Gpu {
         let filler = [T::zeroed()];
         let content = if content.is_empty() { &filler } else { content };
         self.check_size(purpose, size_of_val(content) as u64)?;
+        self.take(purpose, size_of_val(content) as u64)?;
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some(purpose.what),
             contents: bytemuck::cast_slice(content),
@@ -60,6 +99,7 @@ impl Gpu {
     /// A zeroed storage buffer of at least 16 bytes.
     pub fn zeroed(&self, purpose: Purpose, size: u64) -> Result<wgpu::Buffer, Error> {
         self.check_size(purpose, size)?;
+        self.take(purpose, size.max(16))?;
         Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(purpose.what),
             size: size.max(16),
@@ -154,6 +194,7 @@ impl Gpu {
                 remedy: purpose.remedy,
             });
         }
+        self.take(purpose, height * (16 << RECORDS_WIDTH_BITS))?;
         let width = 1 << RECORDS_WIDTH_BITS;
         Ok(self.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(purpose.what),
@@ -334,4 +375,22 @@ pub(crate) fn texture_bytes(texture: &wgpu::Texture) -> u64 {
 /// The 64-bit integer that the kernels keep in two words, the low one first.
 pub(crate) fn wide([low, high]: [u32; 2]) -> u64 {
     u64::from(high) << 32 | u64::from(low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_counts_everything_and_names_what_is_too_much() {
+        let limit = MemoryLimit::new(100);
+        let purpose = Purpose { what: "the maps", remedy: "lower map_size" };
+        limit.take(purpose, 60).unwrap();
+        limit.take(purpose, 40).unwrap();
+        let message = limit.take(purpose, 1).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "the maps need 1 bytes, and of the 100 that may be taken on the device 0 are left: lower map_size"
+        );
+    }
 }

@@ -41,7 +41,7 @@ impl Guide {
         // together, which guides of each alone would upset.
         let targets = emission.targets().len().max(1);
         // Where a sphere sends a photon that it does not aim depends on all four numbers at once, which two tables do not know.
-        let is_unaimed = *emission == Emission::Unaimed;
+        let is_unaimed = matches!(emission, Emission::Unaimed | Emission::Paper { .. });
         let (targets, side) = match targets {
             _ if is_unaimed => (1, 1),
             1 => (1, 64),

@@ -12,6 +12,7 @@ use crate::{
     features::Features,
     lights::Lights,
     map_plan::{MapPlan, plan_maps},
+    paper,
 };
 
 /// A scene on the host.
@@ -50,7 +51,10 @@ impl HostScene {
         let maps_time = start.elapsed();
 
         let around = scene_bounds(scene, &triangles);
-        let lights = Lights::new(scene, &bvh.triangles, &around);
+        let mut lights = Lights::new(scene, &bvh.triangles, &around);
+        if let Some(profile) = &scene.settings.paper {
+            paper::set_pole(profile, &mut lights);
+        }
         Ok(Self {
             triangles: of_objects,
             maps,

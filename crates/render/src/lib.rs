@@ -3,19 +3,73 @@
 //! Photons leave the lights and fill *energy maps* on the surfaces they reach through glass and mirrors; the camera pass reads
 //! them beside direct light. The same scene, seed and adapter give the same bits.
 //!
-//! ```no_run
-//! # fn example(device: wgpu::Device, queue: wgpu::Queue, scene: diacaustic::scene::Scene) -> Result<(), diacaustic::Error> {
-//! use diacaustic::{Renderer, RendererOptions};
+//! # A picture
 //!
-//! let mut renderer = Renderer::new(&device, &queue, &RendererOptions::default())?;
-//! renderer.set_scene(&scene)?;
-//! renderer.emit_photons(0..1_000_000)?;
-//! renderer.add_samples(16)?;
-//! let film = renderer.film()?; // blocks
-//! println!("the first pixel's radiance: {:?} W/(m² sr)", film.radiance[0]);
-//! # Ok(())
-//! # }
 //! ```
+//! use std::path::Path;
+//! use diacaustic::{Renderer, RendererOptions, scene::parse_scene};
+//!
+//! let text = r#"
+//!     camera = { position = [0, 1.5, 2.5], look_at = [0, 0.3, 0], vertical_fov = 40 }
+//!     render = { width = 64, height = 64 }
+//!     materials.glass = { type = "dielectric", ior = 1.5 }
+//!     materials.plaster = { type = "diffuse", albedo = 0.8 }
+//!     lights = [{ type = "sphere", center = [0.5, 2.5, 0.3], radius = 0.05, flux = 35 }]
+//!     objects = [
+//!         { sphere = { center = [0, 0.4, 0], radius = 0.3 }, material = "glass" },
+//!         { name = "floor", rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }, material = "plaster" },
+//!     ]
+//! "#;
+//! let scene = parse_scene(text, Path::new("."), "ball.toml")?.scene;
+//!
+//! // An application has a device; this one opens one without a window.
+//! let gpu = diacaustic_headless::open(&diacaustic_headless::OpenOptions::default())?;
+//! let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default())?;
+//!
+//! renderer.set_scene(&scene)?;
+//! renderer.emit_photons(0..100_000)?;
+//! renderer.add_samples(4)?;
+//!
+//! let film = renderer.film()?; // waits for the device
+//! let brightest = film.radiance.iter().map(|pixel| pixel[1]).fold(0.0, f32::max);
+//! println!("the brightest pixel has {brightest} W/(m² sr)");
+//! let floor = renderer.energy_map(1)?.expect("a diffuse surface has a map");
+//! let flux: f64 = (0..floor.sums.len()).map(|texel| floor.flux(texel).y).sum();
+//! println!("the caustic brings {flux:.2} W of green light to the floor");
+//! # assert!(brightest > 0.1 && flux > 0.1 && flux < 35.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The calls, in their order
+//!
+//! 1. [`Renderer::new`] on a device that has [`Renderer::required_limits`]. Once for each device: it compiles kernels.
+//! 2. [`Renderer::set_scene`] with a [`scene::Scene`], read by [`scene::load_scene`] or built in code. Again after every change of it.
+//! 3. [`Renderer::emit_photons`] with a range of numbers that follows the one before: more photons make the caustics cleaner, not brighter.
+//! 4. [`Renderer::add_samples`]: more samples make the rest of the picture cleaner. They read the maps of all photons so far, so let
+//!    photons come first; [`Renderer::restart_samples`] starts the picture anew after more of them.
+//!
+//!    Or, in place of these two, [`Renderer::refine`] again and again: it chooses photons and samples until the picture is as exact as the scene's
+//!    `target_error`, or takes the numbers that the scene states.
+//! 5. [`Renderer::render_to_texture`] shows the picture on a texture of the application's at any time; [`Renderer::film`], [`Renderer::layers`],
+//!    [`Renderer::energy_map`] and [`Renderer::statistics`] read it back.
+//!
+//! [`Renderer::save_state`] and [`Renderer::restore_state`] go on later, in another process too, to the same bits.
+//!
+//! The repository's examples show more: `render_to_png`, `build_scene_in_code` and `energy_map_readback` in this crate, and `shared_device`, a window
+//! with sliders.
+//!
+//! # Blocking, threads, memory, errors
+//!
+//! * **Blocking.** Calls that submit work return at once and leave the device to it; those that wait for the device, or are busy on the
+//!   host, say so. A renderer opens no device and starts no thread of its own; building a scene uses rayon's.
+//! * **Threads.** A [`Renderer`] is `Send` and `Sync`: it may move to another thread, and several may read from it. What changes it takes `&mut self`.
+//!   Its work goes to the queue that it was given, in order with the application's own.
+//! * **GPU memory.** A scene takes what [`SceneReport::device_bytes`] says, and each call that reads back as much again for a moment as it reads.
+//!   [`Renderer::dry_run`] finds it without a device, [`RendererOptions::memory`] limits it. Dropping the renderer, or setting another scene,
+//!   frees it.
+//! * **Errors.** Every call that can fail returns an [`Error`] whose message names what is wrong and what would be right, and leaves the renderer as it
+//!   was. Nothing panics on what an application gives it, and nothing is printed. Errors that wgpu reports outside of the calls go to
+//!   the application's own handler.
 
 pub use diacaustic_scene as scene;
 pub use diacaustic_shaders::AimTarget;
@@ -32,6 +86,7 @@ mod error;
 mod error_pass;
 mod features;
 mod film;
+mod fingerprint;
 mod gpu;
 mod guide;
 mod host_scene;
@@ -42,11 +97,13 @@ mod map_plan;
 mod map_records;
 mod map_sums;
 mod material_records;
+mod paper;
 mod photon_pass;
 mod pilot;
 mod random;
 mod ray_query;
 mod refine;
+mod render_state;
 mod renderer;
 mod scene_buffers;
 mod self_test;
@@ -54,6 +111,7 @@ mod spectra_records;
 mod statistics;
 mod texture_records;
 mod tile_choice;
+mod vertex_color_records;
 
 pub use aim::Emission;
 pub use bake::{BakeOptions, Lightmap, SurfacePlace, base_reflectance};
@@ -65,6 +123,7 @@ pub use guide::{Guide, GuideTable};
 pub use layers::{FARTHEST_DEPTH, LayerChannel, LayerImage, LayerValues};
 pub use ray_query::{Ray, RayBatch, RayHit};
 pub use refine::{Refinement, Stage};
+pub use render_state::RenderState;
 pub use renderer::{DEFAULT_MAP_BUDGET, Renderer, RendererOptions};
 pub use self_test::LoopLimit;
 pub use statistics::{Ledger, LightReport, MapSize, PilotReport, SceneReport, Statistics};

@@ -17,6 +17,15 @@ pub(crate) struct MapPlacement {
     pub first_texel: u64,
     /// Area of each texel, m².
     pub areas: Vec<f64>,
+    /// What sums are divided by in place of areas, in the profile `paper`.
+    pub paper_size: Option<f64>,
+}
+
+impl MapPlacement {
+    /// What the sums of each texel are divided by; 0 where there is no surface.
+    pub fn divisors(&self) -> impl Iterator<Item = f32> {
+        self.areas.iter().map(|&area| if area > 0.0 { self.paper_size.unwrap_or(area) as f32 } else { 0.0 })
+    }
 }
 
 /// Texels that the maps whose size the scene leaves open may have in each light group.
@@ -62,7 +71,8 @@ pub(crate) fn place_maps(
         let (plan, tiles) = (plan?, tiles?);
         let first_texel = next_texel;
         next_texel += tiles.texel_count();
-        Some(MapPlacement { first_texel, areas: plan.texel_areas(&tiles), tiles, layout: plan.layout })
+        let areas = plan.texel_areas(&tiles);
+        Some(MapPlacement { first_texel, areas, tiles, layout: plan.layout, paper_size: plan.paper_size })
     });
     Ok(placed.collect())
 }

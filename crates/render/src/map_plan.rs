@@ -15,6 +15,8 @@ pub(crate) struct MapPlan {
     pub is_stated: bool,
     /// The object's triangles that receive light.
     pub receivers: Vec<WorldTriangle>,
+    /// What sums are divided by in place of areas, in the profile `paper`.
+    pub paper_size: Option<f64>,
 }
 
 impl MapPlan {
@@ -38,13 +40,15 @@ pub(crate) fn plan_maps(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<Optio
         if !object.materials.iter().any(|&material| scene.materials[material].is_receiver()) {
             return None;
         }
-        let stated = object.map_size.or(scene.settings.map_size);
+        let of_paper = scene.settings.paper.map(|profile| profile.map_size.texels(object));
+        let stated = of_paper.or(object.map_size).or(scene.settings.map_size);
         let layout = match stated {
             Some(size) => MapLayout::new(object, size),
             None => MapLayout::with_texel_width(object, default_texel_width(&scene.camera, &scene.settings, object)),
         };
         let receivers = own.iter().filter(receives).copied().collect();
-        Some(MapPlan { layout, is_stated: stated.is_some(), receivers })
+        let paper_size = scene.settings.paper.map(|profile| profile.map_size.divisor());
+        Some(MapPlan { layout, is_stated: stated.is_some(), receivers, paper_size })
     };
     scene.objects.iter().enumerate().map(plan).collect()
 }

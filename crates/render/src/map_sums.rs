@@ -37,6 +37,12 @@ fn irradiance_entries(groups: u64) -> u64 {
     if groups > 1 { 1 + groups } else { 1 }
 }
 
+/// Bytes that a texel takes on the device: its sums, its area and its irradiance.
+pub(crate) fn bytes_of_texel(groups: usize) -> u64 {
+    let groups = groups as u64;
+    groups * TEXEL_BYTES + size_of::<f32>() as u64 + 16 * irradiance_entries(groups)
+}
+
 /// The maps of all objects on the device.
 #[derive(Debug)]
 pub(crate) struct EnergyMaps {
@@ -102,7 +108,7 @@ impl EnergyMaps {
         let purpose = if groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
         let words_bytes = groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * WORDS_BYTES;
-        let areas: Vec<f32> = placements.iter().flatten().flat_map(|map| &map.areas).map(|&area| area as f32).collect();
+        let areas: Vec<f32> = placements.iter().flatten().flat_map(MapPlacement::divisors).collect();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
         let areas = gpu.filled(AREAS, &areas)?;
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -136,10 +142,9 @@ impl EnergyMaps {
         [&self.sums.low, &self.sums.high].map(|buffer| wgpu::BindingResource::Buffer(part(buffer)))
     }
 
-    /// Forgets all photons.
-    pub fn clear(&self, gpu: &Gpu) {
-        gpu.clear(&self.sums.low);
-        gpu.clear(&self.sums.high);
+    /// What photons accumulate in, by name.
+    pub fn accumulated(&self) -> [(&'static str, &wgpu::Buffer); 2] {
+        [("low words of energy maps", &self.sums.low), ("high words of energy maps", &self.sums.high)]
     }
 
     /// Reads one object's map. Blocks.
@@ -171,6 +176,7 @@ impl EnergyMaps {
             areas: placement.areas.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,
+            paper_size: placement.paper_size,
         }))
     }
 }

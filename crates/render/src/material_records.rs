@@ -7,34 +7,37 @@ use glam::Vec3;
 
 use crate::{
     lights::medium_key,
+    paper,
     spectra_records::{colored_index, row_of},
 };
 
-/// Reflectance along the normal of the dielectric part of glTF's model.
-pub(crate) const DIELECTRIC_F0: f32 = 0.04;
 /// Steps of the quadrature over angles of incidence.
 const FRESNEL_STEPS: usize = 4096;
 
-/// The record of a material of the scene.
-pub(crate) fn material(scene: &Scene, index: usize) -> shaders::Material {
+/// The record of a material of the scene; `colored` says whether it is on a mesh with vertex colours.
+pub(crate) fn material(scene: &Scene, index: usize, colored: bool) -> shaders::Material {
     let source = &scene.materials[index];
     let kind = &source.kind;
     let caster = if source.is_caster() { kinds::CASTER } else { 0 };
     let receiver = if source.is_receiver() { kinds::RECEIVER } else { 0 };
-    let is_textured = source.textures.any();
+    let is_textured = source.textures.any() || colored;
     let textured = if is_textured { kinds::TEXTURED } else { 0 };
     let scattering = if is_textured { before_pictures(kind) } else { scattering(kind) };
     let specular = match kind {
         MaterialKind::Dielectric { .. } => [row_of(scene, index).map_or(-1.0, |row| row as f32), 0.0, 0.0],
         _ => scattering.specular,
     };
-    shaders::Material {
+    let mut record = shaders::Material {
         specular,
         kind: scattering.kind | caster | receiver | textured,
         medium: medium_key(scene, index),
         emission: source.emission.into(),
         ..scattering
+    };
+    if let (Some(profile), MaterialKind::Dielectric { .. }) = (&scene.settings.paper, kind) {
+        paper::color_dielectric(profile, scene.ambient, &mut record);
     }
+    record
 }
 
 /// What a material does to light, without its roles.
@@ -80,8 +83,8 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
             gloss: width(roughness),
             ..blank
         },
-        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
-            let f0 = Vec3::splat(DIELECTRIC_F0).lerp(base_color, metallic);
+        MaterialKind::MetallicRoughness { base_color, reflectance, metallic, roughness } => {
+            let f0 = reflectance.lerp(base_color, metallic);
             let average = f0 + (Vec3::ONE - f0) / 21.0;
             // A white metal has no base, and would divide 0 by 0.
             let base = (1.0 - metallic) * base_color / (Vec3::ONE - average).max(Vec3::splat(f32::MIN_POSITIVE));
@@ -106,9 +109,13 @@ fn before_pictures(kind: &MaterialKind) -> shaders::Material {
         MaterialKind::Coated { albedo, roughness, .. } => {
             shaders::Material { base: albedo.into(), gloss: roughness, ..derived }
         }
-        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
-            shaders::Material { base: base_color.into(), extinction: [metallic; 3], gloss: roughness, ..derived }
-        }
+        MaterialKind::MetallicRoughness { base_color, reflectance, metallic, roughness } => shaders::Material {
+            base: base_color.into(),
+            specular: reflectance.into(),
+            extinction: [metallic; 3],
+            gloss: roughness,
+            ..derived
+        },
         MaterialKind::Diffuse { .. }
         | MaterialKind::Phong { .. }
         | MaterialKind::Mirror { .. }
@@ -157,11 +164,9 @@ mod tests {
 
     #[test]
     fn textured_surfaces_have_the_constants_of_plain_ones() {
-        for (name, value) in [("SMOOTH", SMOOTH), ("DIELECTRIC_F0", DIELECTRIC_F0)] {
-            let after = diacaustic_shaders::CAMERA.source.split(&format!("const {name}: f32 = ")).nth(1);
-            let written = after.and_then(|text| text.split(';').next()).expect("the kernel's constant");
-            assert_eq!(written.trim_end_matches('f').parse::<f32>().unwrap(), value, "{name}");
-        }
+        let after = diacaustic_shaders::CAMERA.source.split("const SMOOTH: f32 = ").nth(1);
+        let written = after.and_then(|text| text.split(';').next()).expect("the kernel's constant");
+        assert_eq!(written.trim_end_matches('f').parse::<f32>().unwrap(), SMOOTH);
     }
 
     #[test]

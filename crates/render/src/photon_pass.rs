@@ -13,10 +13,12 @@ use crate::{
     Error, Guide, Ledger, LoopLimit, PilotReport,
     aim::{Block, Emission, blocks},
     features::{Features, Pipelines},
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     lights::{Emitter, Lights},
     map_plan::MapPlan,
     map_sums::EnergyMaps,
+    paper,
     pilot::{Pilot, PilotRound},
     random::combine,
     refine::PhotonSupply,
@@ -144,7 +146,11 @@ impl Photons {
         let mut lights = Vec::new();
         let mut turns = 0;
         for emitter in &scene.lights.emitters {
-            let Some(emission) = Emission::toward(emitter, scene.casters) else { continue };
+            let emission = match &scene.settings.paper {
+                Some(profile) => paper::emission(profile, scene.casters),
+                None => Emission::toward(emitter, scene.casters),
+            };
+            let Some(emission) = emission else { continue };
             let features = scene.features.for_photons_of(emitter.kind(), scene.settings);
             let guide = Guide::even(emitter, &emission);
             lights.push(PhotonLight {
@@ -170,6 +176,8 @@ impl Photons {
                 units_per_watt,
                 scene_center: scene.around.center.into(),
                 scene_radius: scene.around.radius,
+                ray_energy: scene.settings.paper.map_or([0.0; 3], |profile| profile.energy.into()),
+                grid_side: scene.settings.paper.map_or(0, |profile| paper::grid_side(&profile, scene.settings)),
                 ..Default::default()
             },
             seed: scene.settings.seed,
@@ -259,6 +267,15 @@ impl Photons {
         Ok(Flights { rounds: flights, report })
     }
 
+    /// Adds what the photons depend on beside the scene: how they are aimed and guided.
+    pub fn add_to(&self, fingerprint: &mut Fingerprint) {
+        let none = Block { first: 0, count: 0, order: None };
+        let params: Vec<_> = self.lights.iter().map(|light| self.block_params(light, &none)).collect();
+        fingerprint.digest("how photons are emitted", &params);
+        let guides: Vec<_> = self.lights.iter().flat_map(|light| light.guide.records()).collect();
+        fingerprint.digest("how photons are guided", &guides);
+    }
+
     /// Submits photons `range`, which take turns over the emitting lights.
     pub fn emit(&self, gpu: &Gpu, scene_group: &wgpu::BindGroup, range: Range<u64>) -> Result<(), Error> {
         let limit = self.supply().most;
@@ -313,7 +330,8 @@ impl Photons {
             lane_count: block.count.div_ceil(self.photons_per_invocation),
             seed: combine(combine(self.seed, SEED_STREAM), emitter.number as u32),
             target_count: aimed.len() as u32,
-            ordered: u32::from(block.order.is_some()),
+            // The order follows emission numbers, which the profile `paper` does not draw.
+            ordered: u32::from(block.order.is_some() && !matches!(light.emission, Emission::Paper { .. })),
             flux_factor: flux_factor(emitter, self.turns),
             guide_columns: light.guide.aim.columns as u32,
             guide_rows: light.guide.aim.rows as u32,

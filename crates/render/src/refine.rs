@@ -3,6 +3,8 @@
 //! All decisions follow from what the device has computed and counted, never from times, so that a render takes the same course in every run.
 //! `docs/refinement.md` says how.
 
+mod saved;
+
 use std::ops::{Range, RangeInclusive};
 
 use diacaustic_scene::RenderSettings;
@@ -137,6 +139,15 @@ impl Course {
             photons: self.emitted,
             samples,
             error: self.camera_error.map(|error| (error + self.map_error).sqrt()),
+        }
+    }
+
+    /// Forgets all samples.
+    pub fn forget_samples(&mut self) {
+        (self.sampled, self.camera_error) = (0, None);
+        self.listed.clear();
+        if self.stage == Stage::Done {
+            self.stage = Stage::Samples;
         }
     }
 

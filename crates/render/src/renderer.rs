@@ -3,26 +3,28 @@
 use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::{LightGroups, Scene};
-use diacaustic_shaders::QueryHit;
+use diacaustic_shaders::{CAMERA, PHOTONS, QueryHit, RESOLVE};
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
     BakeOptions, Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, Lightmap, LoopLimit, PilotReport,
-    Refinement, RenderParams, SceneReport, Statistics,
+    Refinement, RenderParams, RenderState, SceneReport, Statistics,
     bake::{BakePass, BakeScene, bake},
     camera_pass::{CameraPass, ProbedScene, Samples, Sightings},
     display_pass::DisplayPass,
     error_pass::ErrorPass,
     features::Features,
+    fingerprint::{Difference, Fingerprint},
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
     map_placement::{map_sizes, place_maps, texel_budget},
-    map_sums::{EnergyMaps, ResolvePass, most_texels},
+    map_sums::{EnergyMaps, ResolvePass, bytes_of_texel, most_texels},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     refine::{Course, Step},
+    render_state::SavedBuffer,
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
     tile_choice::choose_tiles,
@@ -34,6 +36,9 @@ pub struct RendererOptions {
     /// Bytes that the sums of all energy maps whose size the scene leaves open may take; if none, what the scene says, else
     /// [`DEFAULT_MAP_BUDGET`].
     pub map_budget: Option<u64>,
+    /// Bytes that buffers and textures of a scene may take together, without what copies take for a moment; what the device gives if none. Maps
+    /// whose size the scene leaves open have sums of a quarter of it at most. While one scene replaces another, both are on the device.
+    pub memory: Option<u64>,
 }
 
 /// Bytes that the sums of energy maps may take, if nobody says: 256 MiB.
@@ -45,7 +50,8 @@ pub(crate) const MOST_IN_FLIGHT: u32 = 256;
 /// Renders scenes on an application's device.
 ///
 /// Work is submitted to the device's queue and goes on after a call returns, except where a method says that it blocks. A
-/// renderer may move between threads; its methods that change it need it whole.
+/// renderer is `Send` and `Sync`; the methods that change it need it whole. After an error it is as it was before the call, except that work
+/// which was submitted stays submitted.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
@@ -60,6 +66,8 @@ pub struct Renderer {
     display_pass: DisplayPass,
     query_pass: QueryPass,
     scene: Option<OnDevice>,
+    /// Whether the device runs nothing of what it is given.
+    is_dry: bool,
 }
 
 /// A scene on the device, and how far it is rendered.
@@ -87,7 +95,9 @@ impl OnDevice {
     /// Turns the sums of the photons so far into irradiance, if that is not done.
     fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
         if self.unresolved {
-            pass.run(gpu, &self.maps, self.photons.units_per_watt, self.photon_count);
+            // In the profile `paper` photons do not share the light's flux.
+            let sharing = if self.scene.settings.paper.is_some() { 1 } else { self.photon_count };
+            pass.run(gpu, &self.maps, self.photons.units_per_watt, sharing);
             self.unresolved = false;
         }
     }
@@ -101,6 +111,30 @@ impl OnDevice {
     fn pixels(&self) -> u64 {
         u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height)
     }
+
+    /// What photons and samples accumulate in, by name.
+    fn accumulated(&self) -> Vec<(&'static str, &wgpu::Buffer)> {
+        let ledgers = [("ledgers", &self.photons.ledger)];
+        self.maps.accumulated().into_iter().chain(ledgers).chain(self.samples.accumulated()).collect()
+    }
+
+    /// What the bits of photons and samples depend on.
+    fn fingerprint(&self, adapter: &wgpu::AdapterInfo) -> Fingerprint {
+        let wgpu::AdapterInfo { name, driver, driver_info, .. } = adapter;
+        let mut fingerprint = Fingerprint::default();
+        fingerprint.say("version", env!("CARGO_PKG_VERSION"));
+        fingerprint.say("adapter", format!("{name} ({driver} {driver_info})"));
+        fingerprint.say("seed", self.scene.settings.seed);
+        for kernel in [PHOTONS, RESOLVE, CAMERA] {
+            fingerprint.digest(&format!("the kernel {}", kernel.name), kernel.source.as_bytes());
+        }
+        fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
+        fingerprint.extend(&self.buffers.fingerprint);
+        fingerprint.say("list of features", format!("{:?}", self.features));
+        self.photons.add_to(&mut fingerprint);
+        self.samples.add_to(&mut fingerprint);
+        fingerprint
+    }
 }
 
 impl Renderer {
@@ -110,37 +144,59 @@ impl Renderer {
         wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::default() }
     }
 
-    /// Compiles the kernels that every scene needs and tests how the adapter treats long loops. Blocks.
+    /// Compiles the kernels that every scene needs and tests how the adapter treats long loops. Blocks: up to seconds where the driver has not
+    /// cached the kernels. Takes some kilobytes on the device.
     ///
     /// # Errors
     /// If the device's limits are too low, the adapter ends loops too early, or the device fails.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue, options: &RendererOptions) -> Result<Self, Error> {
-        let gpu = Gpu { device: device.clone(), queue: queue.clone() };
+        let gpu = Gpu { device: device.clone(), queue: queue.clone(), limit: None };
         check_limits(&device.limits())?;
-        gpu.guarded(|| {
-            let loop_limit = LoopLimit::measure(&gpu)?;
-            let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
-            Ok(Self {
-                photon_pass: PhotonPass::new(&gpu, &scene_layout),
-                resolve_pass: ResolvePass::new(&gpu),
-                camera_pass: CameraPass::new(&gpu, &scene_layout),
-                error_pass: ErrorPass::new(&gpu),
-                bake_pass: BakePass::new(&gpu, &scene_layout),
-                display_pass: DisplayPass::new(&gpu),
-                query_pass: QueryPass::new(&gpu, &scene_layout),
-                gpu: gpu.clone(),
-                options: options.clone(),
-                loop_limit,
-                scene_layout,
-                scene: None,
-            })
-        })
+        gpu.guarded(|| Ok(Self::on(&gpu, options, LoopLimit::measure(&gpu)?)))
+    }
+
+    fn on(gpu: &Gpu, options: &RendererOptions, loop_limit: LoopLimit) -> Self {
+        let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
+        Self {
+            photon_pass: PhotonPass::new(gpu, &scene_layout),
+            resolve_pass: ResolvePass::new(gpu),
+            camera_pass: CameraPass::new(gpu, &scene_layout),
+            error_pass: ErrorPass::new(gpu),
+            bake_pass: BakePass::new(gpu, &scene_layout),
+            display_pass: DisplayPass::new(gpu),
+            query_pass: QueryPass::new(gpu, &scene_layout),
+            gpu: gpu.clone(),
+            options: options.clone(),
+            loop_limit,
+            scene_layout,
+            scene: None,
+            is_dry: false,
+        }
+    }
+
+    /// What [`Renderer::set_scene`] would report, found without a device, on one whose buffers may be of 2 GiB. There is no pilot, whose findings
+    /// choose the texels of maps whose size the scene leaves open: [`SceneReport::device_bytes`] counts all that they may take, and
+    /// [`SceneReport::maps`] what they would have if the camera did not see them. Blocks while it builds the scene on the host.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_scene`].
+    pub fn dry_run(scene: &Scene, options: &RendererOptions) -> Result<SceneReport, Error> {
+        let largest = u64::from(u32::MAX / 2);
+        let required_limits = wgpu::Limits {
+            max_storage_buffer_binding_size: largest,
+            max_buffer_size: largest,
+            ..Self::required_limits()
+        };
+        let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor { required_limits, ..Default::default() });
+        let gpu = Gpu { device, queue, limit: None };
+        Self { is_dry: true, ..Self::on(&gpu, options, LoopLimit::NONE) }.set_scene(scene)
     }
 
     /// Prepares a scene: builds its hierarchy and maps on the host, and uploads them. Photons and samples start from 0.
     ///
     /// Compiles the kernels for what the scene makes use of, if no scene before it did the same; finds by throw-away photons where others are to
-    /// be sent, unless the scene says `guiding = false`. Blocks: seconds on a software adapter that has not cached the kernels.
+    /// be sent, unless the scene says `guiding = false`. Blocks: seconds on a software adapter that has not cached the kernels. Takes
+    /// [`SceneReport::device_bytes`] on the device; those of the scene set before are given back when this one is there.
     ///
     /// # Errors
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
@@ -164,7 +220,8 @@ impl Renderer {
     /// Bytes that the sums of maps whose size the scene leaves open may take.
     fn map_budget(&self, scene: &Scene) -> u64 {
         let of_scene = scene.settings.map_budget.map(|mebibytes| u64::from(mebibytes) << 20);
-        self.options.map_budget.or(of_scene).unwrap_or(DEFAULT_MAP_BUDGET)
+        let quarter = self.options.memory.map_or(u64::MAX, |memory| memory / 4);
+        self.options.map_budget.or(of_scene).unwrap_or(DEFAULT_MAP_BUDGET).min(quarter)
     }
 
     /// Sends a scene to the device, flies the pilots if photons are guided or a map's size is open, and then places the maps.
@@ -174,7 +231,7 @@ impl Renderer {
         host: HostScene,
         mut report: SceneReport,
     ) -> Result<(OnDevice, SceneReport), Error> {
-        let gpu = &self.gpu;
+        let gpu = &self.gpu.limited_to(self.options.memory);
         let mut buffers = SceneBuffers::new(gpu, &self.scene_layout, scene, &host)?;
         let photons_of = PhotonScene {
             settings: &scene.settings,
@@ -189,7 +246,7 @@ impl Renderer {
         let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
         let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
         let is_open = host.maps.iter().flatten().any(|plan| !plan.is_stated);
-        if photons.can_emit() && (scene.settings.guiding || is_open) {
+        if !self.is_dry && photons.can_emit() && (scene.settings.guiding || is_open) {
             let start = Instant::now();
             let group = &buffers.bind_group;
             let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), 1)?;
@@ -201,6 +258,11 @@ impl Renderer {
         let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), groups);
         let choice = choose_tiles(&host.maps, &sightings.list, sightings.pixels, flights.landings(), budget);
         report.maps = map_sizes(&host.maps, &choice);
+        // What open maps may take beyond this, where no pilot has said how much they do.
+        let open =
+            host.maps.iter().zip(&choice.tiles).filter(|(plan, _)| plan.as_ref().is_some_and(|plan| !plan.is_stated));
+        let taken: u64 = open.filter_map(|(_, tiles)| tiles.as_ref()).map(|tiles| tiles.texel_count()).sum();
+        let reserve = if self.is_dry && is_open { budget.saturating_sub(taken) * bytes_of_texel(groups) } else { 0 };
         let placements = place_maps(host.maps, choice, most_texels(&gpu.device.limits(), groups))?;
         report.maps_time += start.elapsed();
         let maps = EnergyMaps::new(gpu, &self.resolve_pass, placements, groups)?;
@@ -208,7 +270,7 @@ impl Renderer {
         photons.fill(gpu, &self.photon_pass, &maps, groups)?;
         samples.show(gpu, &self.camera_pass, &maps)?;
         report.map_bytes = maps.sums_bytes();
-        report.device_bytes = buffers.bytes + maps.bytes + samples.bytes();
+        report.device_bytes = buffers.bytes + maps.bytes + reserve + samples.bytes();
         report.photon_turns = photons.turns;
         let on_device = OnDevice {
             course: Course::new(&scene.settings, photons.supply()),
@@ -348,7 +410,8 @@ impl Renderer {
         self.gpu.wait()
     }
 
-    /// Submits the drawing of the picture so far over the whole of a texture, which may be of any renderable colour format.
+    /// Submits the drawing of the picture so far over the whole of a texture, which may be of any renderable colour format. Compiles a shader
+    /// for each format that it meets first; does not wait for the device.
     ///
     /// # Errors
     /// If no scene is set.
@@ -359,7 +422,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Reads the picture so far. Blocks until all submitted work is done.
+    /// Reads the picture so far. Blocks until all submitted work is done. Takes 16 bytes a pixel on the device for a moment.
     ///
     /// # Errors
     /// If no scene is set, the device fails, or it cut invocations short.
@@ -368,7 +431,7 @@ impl Renderer {
         on_device.samples.read(&self.gpu, on_device.sample_count)
     }
 
-    /// Reads the layers that the scene's `output.layers` asks for, in the order of [`Layer::ALL`](diacaustic_scene::Layer::ALL). Blocks until
+    /// Reads, through a copy on the device of each of their sums, the layers that the scene's `output.layers` asks for, in the order of [`Layer::ALL`](diacaustic_scene::Layer::ALL). Blocks until
     /// all submitted work is done.
     ///
     /// # Errors
@@ -378,7 +441,8 @@ impl Renderer {
         on_device.samples.read_layers(&self.gpu, &on_device.scene)
     }
 
-    /// Reads an object's energy map; none if the object is no receiver. Blocks until all submitted work is done.
+    /// Reads an object's energy map; none if the object is no receiver. Blocks until all submitted work is done. Takes as much as the map on
+    /// the device for a moment.
     ///
     /// # Errors
     /// If no scene is set, the scene has no such object, or the device fails.
@@ -450,7 +514,8 @@ impl Renderer {
         Ok(batch.read(&self.gpu)?.into_iter().map(hit).collect())
     }
 
-    /// Uploads rays to be traced, once or often, by [`Renderer::trace_rays`].
+    /// Uploads rays to be traced, once or often, by [`Renderer::trace_rays`]. Does not wait for the device. A batch takes 48 bytes a ray on it
+    /// until it is dropped.
     ///
     /// # Errors
     /// If the rays do not fit into a buffer.
@@ -458,7 +523,7 @@ impl Renderer {
         self.gpu.guarded(|| self.query_pass.upload(&self.gpu, rays, any_hit))
     }
 
-    /// Submits the tracing of uploaded rays.
+    /// Submits the tracing of uploaded rays. Does not wait for the device.
     ///
     /// # Errors
     /// If no scene is set.
@@ -468,14 +533,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Forgets all photons and samples; the scene stays.
+    /// Forgets all photons and samples; the scene stays. Does not wait for the device.
     ///
     /// # Errors
     /// If no scene is set.
     pub fn restart(&mut self) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.maps.clear(&self.gpu);
-        for buffer in std::iter::once(&on_device.photons.ledger).chain(on_device.samples.buffers()) {
+        for (_, buffer) in on_device.accumulated() {
             self.gpu.clear(buffer);
         }
         on_device.course = Course::new(&on_device.scene.settings, on_device.photons.supply());
@@ -484,6 +548,77 @@ impl Renderer {
         on_device.sample_sum = 0;
         on_device.unresolved = true;
         Ok(())
+    }
+
+    /// Forgets all samples; the scene and its photons stay. Does not wait for the device.
+    ///
+    /// # Errors
+    /// If no scene is set.
+    pub fn restart_samples(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        for (_, buffer) in on_device.samples.accumulated() {
+            self.gpu.clear(buffer);
+        }
+        on_device.course.forget_samples();
+        on_device.sample_count = 0;
+        on_device.sample_sum = 0;
+        Ok(())
+    }
+
+    /// Reads everything that photons and samples have left, to go on from it later, in another process too. Blocks until all submitted work
+    /// is done. The state takes as much memory on the host as the sums of maps, film and layers on the device.
+    ///
+    /// # Errors
+    /// If no scene is set or the device fails.
+    pub fn save_state(&self) -> Result<RenderState, Error> {
+        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
+        let read = |(name, buffer): (&str, &wgpu::Buffer)| {
+            Ok(SavedBuffer { name: name.to_owned(), words: self.gpu.read(buffer, 0..buffer.size() / 4)? })
+        };
+        Ok(RenderState {
+            note: String::new(),
+            photons: on_device.photon_count,
+            samples: on_device.sample_count,
+            sample_sum: on_device.sample_sum,
+            course: on_device.course.words(),
+            fingerprint: on_device.fingerprint(&self.gpu.device.adapter_info()),
+            buffers: on_device.accumulated().into_iter().map(read).collect::<Result<_, Error>>()?,
+        })
+    }
+
+    /// Puts a saved state in the place of all photons and samples so far. What follows is, to the bit, what would have followed where it was saved:
+    /// [`RenderState::photons`] and [`RenderState::samples`] tell with which to go on. Blocks until all submitted work is done.
+    ///
+    /// # Errors
+    /// If no scene is set; if the state is of another scene, seed, version of this crate or adapter; or if the device fails. What was there
+    /// before then stays.
+    pub fn restore_state(&mut self, state: &RenderState) -> Result<(), Error> {
+        let adapter = self.gpu.device.adapter_info();
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        if let Some(Difference { name, first, second }) = state.fingerprint.difference(&on_device.fingerprint(&adapter))
+        {
+            return Err(Error::OtherState { what: name, saved: first, found: second });
+        }
+        let buffers = on_device.accumulated();
+        let shape = |name: &str, words: u64| (name.to_owned(), words);
+        let saved: Vec<_> = state.buffers.iter().map(|saved| shape(&saved.name, saved.words.len() as u64)).collect();
+        let wanted: Vec<_> = buffers.iter().map(|(name, buffer)| shape(name, buffer.size() / 4)).collect();
+        if saved != wanted {
+            return Err(Error::BadState("its buffers are not those of this scene".to_owned()));
+        }
+        let course = Course::new(&on_device.scene.settings, on_device.photons.supply()).resumed(&state.course);
+        let course = course.ok_or_else(|| Error::BadState("how far it was is damaged".to_owned()))?;
+        self.gpu.wait()?;
+        for ((_, buffer), saved) in buffers.into_iter().zip(&state.buffers) {
+            self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&saved.words));
+        }
+        self.gpu.queue.submit([]);
+        on_device.course = course;
+        on_device.photon_count = state.photons;
+        on_device.sample_count = state.samples;
+        on_device.sample_sum = state.sample_sum;
+        on_device.unresolved = true;
+        self.gpu.wait()
     }
 
     /// Blocks until all submitted work is done.

@@ -1,5 +1,6 @@
 //! The scene on the device: bind group 0 of both passes.
 
+use bytemuck::Pod;
 use diacaustic_scene::{LightKind, Material, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::{material_kind, triangle_flag};
@@ -8,6 +9,7 @@ use glam::Vec2;
 
 use crate::{
     Error,
+    fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, texture_bytes},
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
@@ -17,10 +19,11 @@ use crate::{
     material_records::material,
     spectra_records::spectra_record,
     texture_records::TextureRecords,
+    vertex_color_records::{colored_materials, vertex_colors},
 };
 
 /// The bindings of `shaders/layout/scene.wgsl`.
-pub(crate) const BINDINGS: [Binding; 13] = [Binding::Records; 13];
+pub(crate) const BINDINGS: [Binding; 14] = [Binding::Records; 14];
 
 const TRIANGLES: Purpose = Purpose { what: "the scene's triangles", remedy: "use fewer triangles" };
 const CORNERS: Purpose = Purpose { what: "the triangles' corners", remedy: "use fewer triangles" };
@@ -32,6 +35,7 @@ const EMITTING_TRIANGLES: Purpose = Purpose { what: "the triangles that shine", 
 const ENVIRONMENT: Purpose = Purpose { what: "the environment's picture", remedy: "use a smaller picture" };
 
 const COORDINATES: Purpose = Purpose { what: "the triangles' texture coordinates", remedy: "use fewer triangles" };
+const COLORS: Purpose = Purpose { what: "the triangles' vertex colours", remedy: "use fewer triangles" };
 const TEXTURES: Purpose = Purpose { what: "the list of textures", remedy: "use fewer textures" };
 const TEXELS: Purpose = Purpose { what: "the textures' pictures", remedy: "use smaller pictures" };
 
@@ -44,6 +48,21 @@ pub(crate) struct SceneBuffers {
     pub bind_group: wgpu::BindGroup,
     pub bytes: u64,
     views: [wgpu::TextureView; BINDINGS.len()],
+    /// Of all that is in them.
+    pub fingerprint: Fingerprint,
+}
+
+/// Sends records to the device, and remembers what was sent.
+struct Uploader<'g> {
+    gpu: &'g Gpu,
+    fingerprint: Fingerprint,
+}
+
+impl Uploader<'_> {
+    fn records<T: Pod>(&mut self, purpose: Purpose, records: &[T]) -> Result<wgpu::Texture, Error> {
+        self.fingerprint.digest(purpose.what, records);
+        self.gpu.records(purpose, records)
+    }
 }
 
 /// The binding of the maps' records.
@@ -62,7 +81,9 @@ impl SceneBuffers {
             .collect();
         let blank: Vec<_> = maps.iter().map(|plan| plan.as_ref().map(blank_tiles)).collect();
         let blank = map_records(blank.iter().map(|tiles| tiles.as_ref().map(|tiles| (tiles, 0))));
-        let mut materials: Vec<_> = (0..scene.materials.len()).map(|index| material(scene, index)).collect();
+        let colored = colored_materials(scene);
+        let mut materials: Vec<_> =
+            colored.iter().enumerate().map(|(index, colored)| material(scene, index, *colored)).collect();
         for (order, (index, _)) in emissive_materials(scene).into_iter().enumerate() {
             materials[index].emission_pdf_area = lights.pdf_area(scene.lights.len() + order);
             materials[index].kind |= (lights.groups.of_materials[index] as u32) << material_kind::GROUP_SHIFT;
@@ -70,30 +91,35 @@ impl SceneBuffers {
         let surfaces = scene.lights.iter().enumerate();
         materials.extend(surfaces.map(|(number, light)| light_surface(lights, number, &light.kind)));
         let pictures = TextureRecords::new(scene, &bvh.triangles);
+        let mut uploader = Uploader { gpu, fingerprint: Fingerprint::default() };
         let textures = [
-            gpu.records(NODES, nodes)?,
-            gpu.records(TRIANGLES, &triangles)?,
-            gpu.records(CORNERS, &corners)?,
+            uploader.records(NODES, nodes)?,
+            uploader.records(TRIANGLES, &triangles)?,
+            uploader.records(CORNERS, &corners)?,
             gpu.records(MAPS, &blank)?,
-            gpu.records(MATERIALS, &materials)?,
-            gpu.records(LIGHTS, &lights.records)?,
-            gpu.records(EMITTING_TRIANGLES, &lights.triangles)?,
-            gpu.records(ENVIRONMENT, &lights.environment)?,
-            gpu.records(COORDINATES, &pictures.coordinates)?,
-            gpu.records(TEXTURES, &pictures.materials)?,
-            gpu.records(TEXTURES, &pictures.textures)?,
-            gpu.records(TEXELS, &pictures.texels)?,
-            gpu.records(SPECTRA, &spectra_record(scene))?,
+            uploader.records(MATERIALS, &materials)?,
+            uploader.records(LIGHTS, &lights.records)?,
+            uploader.records(EMITTING_TRIANGLES, &lights.triangles)?,
+            uploader.records(ENVIRONMENT, &lights.environment)?,
+            uploader.records(COORDINATES, &pictures.coordinates)?,
+            uploader.records(TEXTURES, &pictures.materials)?,
+            uploader.records(TEXTURES, &pictures.textures)?,
+            uploader.records(TEXELS, &pictures.texels)?,
+            uploader.records(SPECTRA, &spectra_record(scene))?,
+            uploader.records(COLORS, &vertex_colors(scene, &bvh.triangles))?,
         ];
         let bytes = textures.iter().map(texture_bytes).sum();
         let views = textures.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
-        Ok(Self { bind_group: bind_group(gpu, layout, &views), bytes, views })
+        let fingerprint = uploader.fingerprint;
+        Ok(Self { bind_group: bind_group(gpu, layout, &views), bytes, views, fingerprint })
     }
 
     /// Tells the kernels where the maps' tiles lie.
     pub fn place_maps(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout, maps: &EnergyMaps) -> Result<(), Error> {
         let placed = maps.placements.iter().map(|map| map.as_ref().map(|map| (&map.tiles, map.first_texel)));
-        let texture = gpu.records(MAPS, &map_records(placed))?;
+        let records = map_records(placed);
+        self.fingerprint.digest(MAPS.what, &records);
+        let texture = gpu.records(MAPS, &records)?;
         self.bytes += texture_bytes(&texture);
         self.views[MAPS_BINDING] = texture.create_view(&wgpu::TextureViewDescriptor::default());
         self.bind_group = bind_group(gpu, layout, &self.views);

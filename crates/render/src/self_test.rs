@@ -30,6 +30,9 @@ pub struct LoopLimit {
 }
 
 impl LoopLimit {
+    /// No limit, for a device that runs nothing.
+    pub(crate) const NONE: Self = Self { iterations: None };
+
     /// Runs a long loop and counts. Blocks.
     pub(crate) fn measure(gpu: &Gpu) -> Result<Self, Error> {
         let buffer = gpu.filled(COUNTS, &[ASKED, 0])?;

@@ -319,7 +319,7 @@ mod tests {
     /// The same of a surface of several charts.
     fn choice_of(chart_count: u32, budget: u64) -> TileChoice {
         let layout = MapLayout { width: 1001, height: 1001, layers: 2, chart_count, ..Default::default() };
-        let plan = MapPlan { layout, is_stated: false, receivers: Vec::new() };
+        let plan = MapPlan { layout, is_stated: false, receivers: Vec::new(), paper_size: None };
         let at = |k: u32| (f64::from(k) + 0.5) * 10.0 / f64::from(SIDE);
         let places = || (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| DVec2::new(at(x), at(y))));
         let seen = |place: DVec2| Sighting {

@@ -34,6 +34,8 @@ pub enum Subject {
     Render,
     /// The output settings.
     Output,
+    /// The settings of the profile `paper`.
+    Paper,
     /// A material.
     Material {
         /// Its place in [`Scene::materials`](crate::Scene::materials).
@@ -64,6 +66,7 @@ impl fmt::Display for Subject {
             Self::Camera => f.write_str("camera"),
             Self::Render => f.write_str("render"),
             Self::Output => f.write_str("output"),
+            Self::Paper => f.write_str("paper"),
             Self::Material { name, .. } => write!(f, "material {name:?}"),
             Self::Light { name, .. } => write!(f, "light {name:?}"),
             Self::Object { name, .. } => write!(f, "object {name:?}"),
@@ -187,6 +190,14 @@ pub enum Error {
         /// What is wrong and what would be right.
         problem: String,
     },
+    /// A PLY or STL file makes no sense.
+    #[error("{}: the file {problem}", path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
     /// A glTF file makes no sense, or asks for what is not read.
     #[error("{}: {}{problem}", path.display(), place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
     Gltf {
@@ -306,6 +317,25 @@ pub enum Warning {
         /// What is wrong with the library.
         problem: String,
     },
+    /// A picture of a material from an MTL file cannot be shown.
+    #[error("material {material:?}: {problem}; it shows without")]
+    UnreadPicture {
+        /// The material.
+        material: String,
+        /// What is wrong with the picture.
+        problem: String,
+    },
+    /// Glass from an MTL file is on a surface that encloses no volume.
+    #[error(
+        "{}: the material {material:?} is glass on a surface that is not closed; there it has no thickness (thin_walled)",
+        path.display()
+    )]
+    OpenGlass {
+        /// The OBJ file.
+        path: PathBuf,
+        /// The material.
+        material: String,
+    },
     /// Something in a glTF file is not shown as it is meant.
     #[error("{}: {}{problem}", path.display(), place.as_ref().map(|place| format!("{place}: ")).unwrap_or_default())]
     Gltf {
@@ -316,8 +346,8 @@ pub enum Warning {
         /// What is not shown.
         problem: String,
     },
-    /// A material from an MTL file has a texture, which is not read.
-    #[error("material {material:?}: its textures ({maps}) are not read; its colour alone is used")]
+    /// A material from an MTL file has pictures of kinds that are not read.
+    #[error("material {material:?}: its pictures ({maps}) are of kinds that are not read; it shows without them")]
     IgnoredTextures {
         /// The material.
         material: String,

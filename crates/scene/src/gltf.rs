@@ -3,6 +3,7 @@
 //! The crate `gltf-json` gives the lists of the file their types; whatever they refer to is checked here.
 
 mod accessors;
+mod animations;
 mod buffers;
 mod container;
 mod fault;
@@ -10,18 +11,26 @@ mod instances;
 mod lights;
 mod materials;
 mod meshes;
+mod meshopt;
 mod nodes;
+mod options;
 mod pose;
 mod primitives;
 mod textures;
+mod variants;
 
-use std::{collections::HashMap, fs, path::Path, sync::Arc};
+use std::{
+    collections::{BTreeSet, HashMap},
+    fs,
+    path::Path,
+    sync::Arc,
+};
 
 use glam::{Affine3A, DAffine3};
 use gltf_json::Root;
 
-pub use self::lights::GltfCamera;
 use self::{
+    animations::motions,
     buffers::Buffers,
     fault::{Fault, Result, place, shortened},
     instances::read_instances,
@@ -32,7 +41,8 @@ use self::{
     pose::Pose,
     textures::TextureReader,
 };
-use crate::{Error, Light, Material, Mesh, ReadOptions, Warning, folder::Folder};
+pub use self::{lights::GltfCamera, options::GltfOptions};
+use crate::{Error, Light, Material, Mesh, Warning, folder::Folder};
 
 /// What a glTF file shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,13 +72,13 @@ pub struct GltfObject {
     pub materials: Vec<usize>,
 }
 
-/// Reads a glTF file: the default scene, at rest. The files that it names must lie in its folder or below, unless the options
+/// Reads a glTF file: the default scene, at rest or posed by an animation. The files that it names must lie in its folder or below, unless the options
 /// allow otherwise; nothing is fetched.
 ///
 /// # Errors
-/// If the file or one that it names cannot be read, makes no sense, or requires an extension that is not supported. What is used and
-/// not supported is a warning.
-pub fn load_gltf(path: &Path, options: ReadOptions) -> std::result::Result<GltfFile, Error> {
+/// If the file or one that it names cannot be read, makes no sense, or requires an extension that is not supported, and if it lacks the
+/// animation or variant that the options name. What is used and not supported is a warning.
+pub fn load_gltf(path: &Path, options: &GltfOptions) -> std::result::Result<GltfFile, Error> {
     let bytes = fs::read(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
     parse_gltf(&bytes, path, options)
 }
@@ -77,12 +87,12 @@ pub fn load_gltf(path: &Path, options: ReadOptions) -> std::result::Result<GltfF
 ///
 /// # Errors
 /// As [`load_gltf`].
-pub fn parse_gltf(bytes: &[u8], path: &Path, options: ReadOptions) -> std::result::Result<GltfFile, Error> {
-    let folder = Folder::of(path, options);
-    read(bytes, path, &folder).map_err(|fault| fault.error(path))
+pub fn parse_gltf(bytes: &[u8], path: &Path, options: &GltfOptions) -> std::result::Result<GltfFile, Error> {
+    let folder = Folder::of(path, options.read);
+    read(bytes, path, &folder, options).map_err(|fault| fault.error(path))
 }
 
-fn read(bytes: &[u8], path: &Path, folder: &Folder) -> Result<GltfFile> {
+fn read(bytes: &[u8], path: &Path, folder: &Folder, options: &GltfOptions) -> Result<GltfFile> {
     let container = container::split(bytes)?;
     let root = container::parse(container.json)?;
     let unsupported = container::check_extensions(&root)?;
@@ -90,9 +100,9 @@ fn read(bytes: &[u8], path: &Path, folder: &Folder) -> Result<GltfFile> {
     let textures = TextureReader::new(&root, &buffers, folder);
     let mut reader = Reader {
         root: &root,
-        meshes: MeshReader::new(&root, &buffers),
+        meshes: MeshReader::new(&root, &buffers, variants::variant(&root, options.variant.as_deref())?),
         materials: MaterialReader::new(&root, textures),
-        nodes: Nodes::read(&root)?,
+        nodes: Nodes::read(&root, motions(&root, &buffers, options)?)?,
         shared: HashMap::new(),
         triangles_left: MOST_TRIANGLES,
         warnings: Vec::new(),
@@ -194,13 +204,14 @@ impl Reader<'_, '_> {
         let SlottedMesh { mut mesh, slots } = slotted;
         let mut materials = Vec::new();
         let is_volume = |slot: &Option<usize>| self.materials.is_volume(*slot);
-        let is_whole_closed = slots.iter().any(is_volume) && mesh.open_edges() == 0;
-        for (number, slot) in slots.iter().enumerate() {
-            let is_closed =
-                self.materials.is_volume(*slot) && (is_whole_closed || part(&mesh, number as u32).open_edges() == 0);
+        mesh.material_slots = slots.iter().map(|slot| self.materials.name(*slot)).collect();
+        let are_closed = match slots.iter().any(is_volume) {
+            true if mesh.open_edges() > 0 => mesh.closed_slots(),
+            _ => vec![true; slots.len()],
+        };
+        for (slot, is_closed) in slots.iter().zip(are_closed) {
             materials.push(self.materials.index(*slot, is_closed)?);
         }
-        mesh.material_slots = slots.iter().map(|slot| self.materials.name(*slot)).collect();
         Ok((Arc::new(mesh), materials))
     }
 
@@ -224,13 +235,6 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The triangles of one slot.
-fn part(mesh: &Mesh, slot: u32) -> Mesh {
-    let in_slot = |triangle: &usize| mesh.triangle_slots.get(*triangle).copied().unwrap_or(0) == slot;
-    let triangles = (0..mesh.triangles.len()).filter(in_slot).map(|triangle| mesh.triangles[triangle]).collect();
-    Mesh { positions: mesh.positions.clone(), triangles, ..Mesh::default() }
-}
-
 /// Makes the names of lights differ.
 fn number_names(lights: &mut [Light]) {
     let mut counts = HashMap::<String, usize>::new();
@@ -251,7 +255,7 @@ fn number_names(lights: &mut [Light]) {
 }
 
 /// A few names as messages list them.
-fn listed(names: &[String]) -> String {
+fn listed(names: &BTreeSet<String>) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<_> = names.iter().take(SHOWN).map(|name| format!("{name:?}")).collect();
     let rest = names.len().saturating_sub(SHOWN);

@@ -94,12 +94,17 @@ pub enum MaterialKind {
     MetallicRoughness {
         /// Base colour, 0 to 1.
         base_color: Vec3,
+        /// Reflectance along the normal of what is no metal, 0 to 0.9; [`PLASTIC_REFLECTANCE`] unless stated.
+        reflectance: Vec3,
         /// Share of metal, 0 to 1.
         metallic: f32,
         /// Roughness.
         roughness: f32,
     },
 }
+
+/// Reflectance along the normal of glTF's model where there is no metal and nothing else is stated: that of the index 1.5.
+pub const PLASTIC_REFLECTANCE: Vec3 = Vec3::splat(0.04);
 
 /// Roughness under which a surface is perfectly smooth.
 pub const SMOOTH: f32 = 0.03;

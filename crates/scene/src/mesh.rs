@@ -7,6 +7,10 @@ use glam::{Vec2, Vec3};
 /// The square of the length below which a normal is taken for a missing one.
 const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
 
+/// From how many triangles on edges are counted in passes, and in how many.
+const LARGE: usize = 1 << 17;
+const PASSES: u32 = 8;
+
 /// An indexed triangle mesh in its object's frame, in metres.
 ///
 /// Triangles are counter-clockwise seen from outside. A vertex is a (position, normal, uv) triple: a position that
@@ -21,6 +25,8 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// A second set of texture coordinates, one for each position, for the energy map alone; or empty.
     pub map_uvs: Vec<Vec2>,
+    /// Factors on the material's colour, linear Rec. 709, 0 to 1 in each channel, one for each position, or empty.
+    pub colors: Vec<Vec3>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, its index into [`Mesh::material_slots`]; empty when there is one slot or none.
@@ -82,6 +88,7 @@ impl Mesh {
                     self.positions.push(self.positions[vertex]);
                     self.uvs.extend(self.uvs.get(vertex).copied());
                     self.map_uvs.extend(self.map_uvs.get(vertex).copied());
+                    self.colors.extend(self.colors.get(vertex).copied());
                     self.normals.push(facet);
                 } else {
                     self.normals[vertex] = facet;
@@ -95,12 +102,20 @@ impl Mesh {
     /// closed, consistently wound surface, also with triangles that welding makes a line or a point of.
     pub fn open_edges(&self) -> usize {
         let welded = self.welded_vertices();
+        let passes = if self.triangles.len() < LARGE { 1 } else { PASSES };
+        (0..passes).map(|pass| self.open_edges_of_pass(&welded, pass, passes)).sum()
+    }
+
+    /// Those of a part of the edges: a list of all of a large mesh would take as much memory as the mesh.
+    fn open_edges_of_pass(&self, welded: &[u32], pass: u32, passes: u32) -> usize {
         let (mut upwards, mut downwards) = (Vec::new(), Vec::new());
         for corners in &self.triangles {
             let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
             for (from, to) in [(a, b), (b, c), (c, a)] {
-                let edge = u64::from(from.min(to)) << 32 | u64::from(from.max(to));
+                let (low, high) = (from.min(to), from.max(to));
+                let edge = u64::from(low) << 32 | u64::from(high);
                 match from.cmp(&to) {
+                    _ if low % passes != pass => {}
                     Ordering::Less => upwards.push(edge),
                     Ordering::Greater => downwards.push(edge),
                     Ordering::Equal => {}
@@ -110,6 +125,26 @@ impl Mesh {
         upwards.sort_unstable();
         downwards.sort_unstable();
         unequal_counts(&upwards, &downwards)
+    }
+
+    /// For each slot, whether its triangles by themselves are a closed surface, as [`open_edges`](Self::open_edges) tells.
+    pub(crate) fn closed_slots(&self) -> Vec<bool> {
+        if self.material_slots.len() < 2 {
+            return vec![self.open_edges() == 0; self.material_slots.len()];
+        }
+        let welded = self.welded_vertices();
+        let mut edges = Vec::with_capacity(3 * self.triangles.len());
+        for (corners, slot) in self.triangles.iter().zip(&self.triangle_slots) {
+            let [a, b, c] = corners.map(|vertex| welded[vertex as usize]);
+            let sides = [(a, b), (b, c), (c, a)].into_iter().filter(|(from, to)| from != to);
+            edges.extend(sides.map(|(from, to)| (*slot, from.min(to), from.max(to), from < to)));
+        }
+        edges.sort_unstable();
+        let mut is_closed = vec![true; self.material_slots.len()];
+        for passes in edges.chunk_by(|a, b| (a.0, a.1, a.2) == (b.0, b.1, b.2)) {
+            is_closed[passes[0].0 as usize] &= 2 * passes.iter().filter(|pass| pass.3).count() == passes.len();
+        }
+        is_closed
     }
 
     /// The texture coordinates that [`Chart::Uvs`] takes.
@@ -151,6 +186,21 @@ fn unequal_counts(first: &[u64], second: &[u64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn slots_are_closed_by_themselves() {
+        let cube = Mesh::cuboid(Vec3::ZERO, Vec3::ONE);
+        let mut mesh = cube.clone();
+        mesh.triangles.extend(&cube.triangles);
+        mesh.triangle_slots = [vec![0; 12], vec![1; 12]].concat();
+        mesh.material_slots = vec!["a".to_owned(), "b".to_owned()];
+        assert_eq!(mesh.closed_slots(), [true, true]);
+        mesh.triangle_slots[13] = 0;
+        assert_eq!((mesh.closed_slots(), mesh.open_edges()), (vec![false, false], 0));
+        mesh.triangle_slots[13] = 1;
+        mesh.triangles[13] = [0, 0, 0];
+        assert_eq!(mesh.closed_slots(), [true, false]);
+    }
 
     #[test]
     fn open_edges_are_counted() {

@@ -1,10 +1,13 @@
 //! Reads scenes from TOML.
 
+mod animation;
 mod lights;
 mod materials;
 mod objects;
 mod overrides;
+mod paper;
 mod refraction;
+mod shapes;
 mod table;
 mod textures;
 
@@ -17,6 +20,7 @@ use self::{
     lights::LightReader,
     materials::MaterialReader,
     objects::ObjectReader,
+    paper::{is_paper, read_paper},
     table::{Document, Table},
 };
 use crate::{
@@ -38,6 +42,8 @@ pub struct LoadedScene {
 pub struct SceneOptions {
     /// Values in place of the file's, in order.
     pub overrides: Vec<Override>,
+    /// The frame of the file's `[animation]` whose values count; if none, those outside of it.
+    pub frame: Option<u32>,
     /// What may be read. It concerns what glTF and OBJ files name; the scene file itself may name files anywhere.
     pub read: ReadOptions,
     /// Whether the file may leave its camera out: one that sees every object then stands for it.
@@ -72,16 +78,32 @@ pub fn parse_scene(text: &str, base_dir: &Path, file_name: &str) -> Result<Loade
 /// Reads a scene as [`parse_scene`] does, with options.
 ///
 /// # Errors
-/// As [`parse_scene`], and if an override leads to no place in the text.
+/// As [`parse_scene`], if an override leads to no place in the text, and if a frame is asked for and the text has no `[animation]`.
 pub fn parse_scene_with(
     text: &str,
     base_dir: &Path,
     file_name: &str,
     options: &SceneOptions,
 ) -> Result<LoadedScene, Error> {
-    let document = Document::parse(text, file_name, &options.overrides)?;
+    let still = Document::parse(text, file_name, &options.overrides)?;
+    let mut overrides = options.overrides.clone();
+    let mut seed_offset = 0;
+    match (still.root().get("animation"), options.frame) {
+        (Some(entry), frame) => {
+            let table = entry.table("[animation]".to_owned(), "a table: [animation]")?;
+            let at_frame = animation::at_frame(&table, frame.unwrap_or(0))?;
+            if frame.is_some() {
+                overrides.extend(at_frame.overrides);
+                seed_offset = at_frame.seed_offset;
+            }
+        }
+        (None, Some(_)) => return Err(still.root().error("has no [animation], so it has no frames")),
+        (None, None) => {}
+    }
+    let document = Document::parse(text, file_name, &overrides)?;
     let sections = Sections::split(document.root(), options.may_lack_camera)?;
-    let ReadScene { scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
+    let ReadScene { mut scene, mut warnings, tables_of_objects } = sections.read(base_dir, options.read)?;
+    scene.settings.seed = scene.settings.seed.wrapping_add(seed_offset);
     warnings.extend(scene.validate().map_err(|error| sections.locate(error, &tables_of_objects))?);
     Ok(LoadedScene { scene, warnings })
 }
@@ -94,6 +116,9 @@ struct ReadScene {
     tables_of_objects: Vec<usize>,
 }
 
+/// Rays of the profile `paper` where a scene does not say.
+const PAPER_RAYS: u64 = 1_000_000;
+
 /// The tables of a scene file.
 struct Sections<'d> {
     root: Table<'d>,
@@ -101,6 +126,7 @@ struct Sections<'d> {
     camera: Option<Table<'d>>,
     render: Option<Table<'d>>,
     output: Option<Table<'d>>,
+    paper: Option<Table<'d>>,
     materials: Vec<(String, Table<'d>)>,
     lights: Vec<Table<'d>>,
     objects: Vec<Table<'d>>,
@@ -108,7 +134,18 @@ struct Sections<'d> {
 
 impl<'d> Sections<'d> {
     fn split(root: Table<'d>, may_lack_camera: bool) -> Result<Self, Error> {
-        root.allow_only(&["background", "ambient", "camera", "render", "output", "materials", "lights", "objects"])?;
+        root.allow_only(&[
+            "background",
+            "ambient",
+            "animation",
+            "camera",
+            "render",
+            "output",
+            "paper",
+            "materials",
+            "lights",
+            "objects",
+        ])?;
         let optional =
             |key: &str, expected| root.get(key).map(|entry| entry.table(format!("[{key}]"), expected)).transpose();
         if !may_lack_camera {
@@ -118,6 +155,7 @@ impl<'d> Sections<'d> {
             camera: optional("camera", "a table: [camera]")?,
             render: optional("render", "a table: [render]")?,
             output: optional("output", "a table: [output]")?,
+            paper: optional("paper", "a table: [paper]")?,
             materials: named_tables(&root, "materials", "tables: [materials.a_name]")?,
             lights: listed_tables(&root, "lights", "an array of tables: [[lights]]")?,
             objects: listed_tables(&root, "objects", "an array of tables: [[objects]]")?,
@@ -130,7 +168,7 @@ impl<'d> Sections<'d> {
         let materials = MaterialReader::new(base_dir).read_all(&self.materials)?;
         let (background, ambient) = (color("background")?, color("ambient")?);
         let camera = self.camera.as_ref().map(read_camera).transpose()?;
-        let settings = self.render.as_ref().map(read_settings).transpose()?.unwrap_or_default();
+        let settings = self.read_settings()?;
         let output = self.output.as_ref().map(|table| read_output(table, base_dir)).transpose()?.unwrap_or_default();
         let lights = LightReader::new(base_dir).read_all(&self.lights)?;
         let mut reader = ObjectReader::new(base_dir, options, materials);
@@ -139,6 +177,29 @@ impl<'d> Sections<'d> {
         let materials = reader.materials;
         let scene = Scene { background, ambient, camera, settings, output, lights, materials, objects };
         Ok(ReadScene { scene, warnings: reader.warnings, tables_of_objects })
+    }
+
+    fn read_settings(&self) -> Result<RenderSettings, Error> {
+        let is_paper = self.render.as_ref().map_or(Ok(false), is_paper)?;
+        let default = match is_paper {
+            // What the paper has not: unset, it is off. More rays are brighter there, so that there is always a number.
+            true => RenderSettings {
+                guiding: false,
+                max_bounces: 0,
+                photons: Some(PAPER_RAYS),
+                ..RenderSettings::default()
+            },
+            false => RenderSettings::default(),
+        };
+        let settings = self.render.as_ref().map_or(Ok(default.clone()), |table| read_settings(table, default))?;
+        match &self.paper {
+            Some(table) if !is_paper => {
+                Err(table.error("counts only with profile = \"paper\" in [render]; set it, or leave [paper] out"))
+            }
+            table => {
+                Ok(RenderSettings { paper: is_paper.then(|| read_paper(table.as_ref())).transpose()?, ..settings })
+            }
+        }
     }
 
     /// Adds to an error of [`Scene::validate`] where the file sets what is at fault.
@@ -154,6 +215,7 @@ impl<'d> Sections<'d> {
             Subject::Camera => self.camera.as_ref(),
             Subject::Render => self.render.as_ref(),
             Subject::Output => self.output.as_ref(),
+            Subject::Paper => self.paper.as_ref(),
             Subject::Material { index, .. } => self.materials.get(*index).map(|(_, table)| table),
             Subject::Light { index, .. } => self.lights.get(*index),
             Subject::Object { index, .. } => tables_of_objects.get(*index).and_then(|table| self.objects.get(*table)),
@@ -196,7 +258,7 @@ fn read_camera(table: &Table<'_>) -> Result<Camera, Error> {
     })
 }
 
-fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
+fn read_settings(table: &Table<'_>, default: RenderSettings) -> Result<RenderSettings, Error> {
     table.allow_only(&[
         "width",
         "height",
@@ -212,8 +274,8 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         "map_budget",
         "filter",
         "wavelength",
+        "profile",
     ])?;
-    let default = RenderSettings::default();
     let whole = |key: &str, default| table.get(key).map_or(Ok(default), |entry| entry.whole32());
     let filters = [("box", PixelFilter::Box), ("blackman-harris", PixelFilter::BlackmanHarris)];
     Ok(RenderSettings {
@@ -231,6 +293,7 @@ fn read_settings(table: &Table<'_>) -> Result<RenderSettings, Error> {
         map_budget: table.get("map_budget").map(|entry| entry.whole32()).transpose()?,
         filter: table.get("filter").map_or(Ok(default.filter), |entry| entry.choice("filter", &filters))?,
         wavelength: table.get("wavelength").map(|entry| entry.number()).transpose()?,
+        paper: None,
     })
 }
 

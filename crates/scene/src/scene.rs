@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
-use crate::{Camera, Layer, Light, Material, Mesh};
+use crate::{Camera, Layer, Light, Material, Mesh, PaperProfile};
 
 /// Everything that a render depends on. Built by a reader of this crate or in code; [`Scene::validate`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,11 @@ impl Scene {
     pub fn has_dispersion(&self) -> bool {
         let mut shown = self.objects.iter().flat_map(|object| &object.materials);
         self.settings.wavelength.is_some() || shown.any(|&index| self.materials[index].dispersion().is_some())
+    }
+
+    /// Whether some mesh has colours at its vertices.
+    pub fn has_vertex_colors(&self) -> bool {
+        self.objects.iter().any(|object| !object.mesh.colors.is_empty())
     }
 }
 
@@ -94,6 +99,8 @@ pub struct RenderSettings {
     /// The wavelength, nm, of the only light that there is; all of it if none. Pictures and maps are then gray: how much of this
     /// wavelength there is, against 1 for white of radiance 1.
     pub wavelength: Option<f32>,
+    /// The 2016 paper's model of light, in place of the physical one.
+    pub paper: Option<PaperProfile>,
 }
 
 /// The pixel's reconstruction filter.
@@ -146,6 +153,7 @@ impl Default for RenderSettings {
             map_budget: None,
             filter: PixelFilter::default(),
             wavelength: None,
+            paper: None,
         }
     }
 }

@@ -5,8 +5,8 @@ use std::{f32::consts::PI, path::Path, sync::Arc};
 use glam::{Affine3A, Vec3};
 
 use crate::{
-    Camera, Error, GltfCamera, GltfFile, Light, LightKind, LoadedScene, Material, MaterialKind, Mesh, Object,
-    OutputSettings, ReadOptions, RenderSettings, Scene, load_gltf,
+    Camera, Error, GltfCamera, GltfFile, GltfOptions, Light, LightKind, LoadedScene, Material, MaterialKind, Mesh,
+    Object, OutputSettings, RenderSettings, Scene, load_gltf,
 };
 
 /// Vertical field of view of a camera that frames the scene, degrees.
@@ -37,12 +37,12 @@ const FLOOR_ALBEDO: f32 = 0.7;
 const BRIGHTNESS: f32 = 0.6;
 
 /// What a glTF file's scene is completed by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudioOptions {
     /// Whether a matt floor lies under everything.
     pub floor: bool,
-    /// What may be read.
-    pub read: ReadOptions,
+    /// What of the file is read.
+    pub file: GltfOptions,
 }
 
 /// Reads a glTF file as a scene: through its first camera, or else one that frames it; by its lights, or else a lamp and even light
@@ -51,7 +51,7 @@ pub struct StudioOptions {
 /// # Errors
 /// As [`load_gltf`], and if the scene has no triangles or [`Scene::validate`] refuses it.
 pub fn load_gltf_scene(path: &Path, options: &StudioOptions) -> Result<LoadedScene, Error> {
-    let mut file = load_gltf(path, options.read)?;
+    let mut file = load_gltf(path, &options.file)?;
     let mut warnings = std::mem::take(&mut file.warnings);
     let fault = |problem: String| Error::Gltf { path: path.to_owned(), place: None, problem };
     if file.objects.is_empty() {

@@ -70,7 +70,9 @@ pub(crate) fn decode_texture(bytes: &[u8], color_space: ColorSpace, most_texels:
         Err(_) => return Err("is neither PNG nor JPEG by its content".to_owned()),
     };
     let (width, height) = match format {
-        ImageFormat::Png => PngDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
+        ImageFormat::Png => {
+            PngDecoder::with_limits(Cursor::new(bytes), Limits::default()).map_err(undecodable)?.dimensions()
+        }
         _ => JpegDecoder::new(Cursor::new(bytes)).map_err(undecodable)?.dimensions(),
     };
     check_size(width, height)?;
@@ -237,6 +239,6 @@ fn decoded(most: u16, color_space: ColorSpace) -> Vec<f32> {
 }
 
 /// The light that a number of an sRGB picture stands for (IEC 61966-2-1).
-fn linear_from_srgb(encoded: f64) -> f64 {
+pub(crate) fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

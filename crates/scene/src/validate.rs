@@ -4,6 +4,7 @@ mod at;
 mod lights;
 mod materials;
 mod meshes;
+mod paper;
 mod textures;
 
 use std::{collections::HashMap, ops::Bound};
@@ -44,6 +45,7 @@ impl Scene {
         self.check_lights()?;
         self.check_light_groups()?;
         self.check_objects()?;
+        self.check_paper()?;
         let mut warnings = self.caustic_warnings();
         for object in &self.objects {
             self.object_warnings(object, &mut warnings);

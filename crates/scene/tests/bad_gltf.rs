@@ -4,13 +4,13 @@ mod gltf_file;
 
 use std::{fs, path::Path};
 
-use diacaustic_scene::{ReadOptions, StudioOptions, load_gltf, load_gltf_scene, parse_gltf};
+use diacaustic_scene::{GltfOptions, ReadOptions, StudioOptions, load_gltf, load_gltf_scene, parse_gltf};
 use gltf_file::{Builder, glb, png};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
 fn message(bytes: &[u8]) -> String {
-    let read = parse_gltf(bytes, Path::new("bad.glb"), ReadOptions::default());
+    let read = parse_gltf(bytes, Path::new("bad.glb"), &GltfOptions::default());
     read.map_or_else(|error| error.to_string(), |_| "it was read".to_owned())
 }
 
@@ -43,7 +43,9 @@ fn good() -> Builder {
         "extensions": {
             "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_ior": { "ior": 1.4 },
             "KHR_materials_volume": { "thicknessFactor": 1, "attenuationDistance": 1, "attenuationColor": [1, 0.5, 0] },
-            "KHR_materials_dispersion": { "dispersion": 0.4 }
+            "KHR_materials_dispersion": { "dispersion": 0.4 },
+            "KHR_materials_clearcoat": { "clearcoatFactor": 0, "clearcoatRoughnessTexture": { "index": 0 } },
+            "KHR_materials_specular": { "specularFactor": 1, "specularColorFactor": [1, 1, 1] }
         }
     }]);
     json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 1, "aspectRatio": 1 } }]);
@@ -63,7 +65,7 @@ fn good() -> Builder {
 
 #[test]
 fn the_good_file_is_good() {
-    let file = parse_gltf(&good().glb(), Path::new("good.glb"), ReadOptions::default()).unwrap();
+    let file = parse_gltf(&good().glb(), Path::new("good.glb"), &GltfOptions::default()).unwrap();
     assert_eq!((file.objects.len(), file.lights.len(), file.cameras.len()), (5, 1, 1));
 }
 
@@ -163,6 +165,28 @@ fn faults() -> Vec<(&'static str, Value, &'static str)> {
             json!(4),
             "materials[0]: has a normalTexture with a damaged",
         ),
+        (
+            "/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor",
+            json!(2),
+            "materials[0]: has 2 as its clearcoatFactor",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_clearcoat/clearcoatRoughnessTexture",
+            json!(2),
+            "materials[0]: has a KHR_materials_clearcoat with a damaged clearcoatRoughnessTexture",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_specular/specularFactor",
+            json!("a"),
+            "materials[0]: has a specularFactor that is not a number",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_specular/specularColorFactor",
+            json!([1, 2]),
+            "materials[0]: has a specularColorFactor that is not 3 numbers",
+        ),
+        ("/meshes/0/primitives/0/attributes/COLOR_0", json!(99), "names accessors[99]"),
+        ("/meshes/0/primitives/0/attributes/COLOR_0", json!(2), "is of type Vec2, but"),
         ("/textures/0/source", json!(6), "textures[0]: names images[6]"),
         ("/textures/0/sampler", json!(6), "textures[0]: names samplers[6]"),
         ("/samplers/0/wrapS", json!(6), "textures[0]: has a sampler of an unknown wrap"),
@@ -285,7 +309,7 @@ fn deep_trees_and_many_nodes_are_no_trouble() {
         .map(|node| if node + 1 < count { json!({ "children": [node + 1] }) } else { json!({ "mesh": 0 }) })
         .collect();
     builder.json["nodes"] = json!(nodes);
-    assert_eq!(parse_gltf(&builder.glb(), Path::new("a.glb"), ReadOptions::default()).unwrap().objects.len(), 1);
+    assert_eq!(parse_gltf(&builder.glb(), Path::new("a.glb"), &GltfOptions::default()).unwrap().objects.len(), 1);
     let deep = format!(
         "{{\"asset\":{{\"version\":\"2.0\"}},\"extensions\":{{\"X\":{}1{}}}}}",
         "[".repeat(100_000),
@@ -305,7 +329,7 @@ fn files_outside_the_folder_are_read_on_demand_alone() {
     let path = folder.path().join("inner/a.gltf");
     let load = |uri: &str, allow_outside| {
         fs::write(&path, builder.gltf_with_uri(uri)).unwrap();
-        load_gltf(&path, ReadOptions { allow_outside }).map_err(|error| error.to_string())
+        load_gltf(&path, &ReadOptions { allow_outside }.into()).map_err(|error| error.to_string())
     };
     assert!(load("../a%20b.bin", true).is_ok());
     let refused = load("../a%20b.bin", false).unwrap_err();
@@ -364,7 +388,7 @@ proptest! {
             let at = index.index(bytes.len());
             bytes[at] = byte;
         }
-        let _ = parse_gltf(&bytes, Path::new("changed.glb"), ReadOptions::default());
+        let _ = parse_gltf(&bytes, Path::new("changed.glb"), &GltfOptions::default());
     }
 
     /// Whatever numbers of the JSON change.
@@ -381,6 +405,6 @@ proptest! {
         let mut found = Vec::new();
         places(&builder.json, String::new(), &mut found);
         *builder.json.pointer_mut(&found[place.index(found.len())]).unwrap() = value;
-        let _ = parse_gltf(&builder.glb(), Path::new("changed.glb"), ReadOptions::default());
+        let _ = parse_gltf(&builder.glb(), Path::new("changed.glb"), &GltfOptions::default());
     }
 }

@@ -117,12 +117,12 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "ambient = 0.1",
         "ambiance = 0.1",
-        r#"x.toml:2:1: the scene file: unknown key "ambiance"; did you mean "ambient"? Known keys: background, ambient, camera, render, output, materials, lights, objects"#,
+        r#"x.toml:2:1: the scene file: unknown key "ambiance"; did you mean "ambient"? Known keys: background, ambient, animation, camera, render, output, materials, lights, objects"#,
     ),
     (
         "[render]",
         "[rendering]",
-        r#"x.toml:10:2: the scene file: unknown key "rendering"; did you mean "render"? Known keys: background, ambient, camera, render, output, materials, lights, objects"#,
+        r#"x.toml:10:2: the scene file: unknown key "rendering"; did you mean "render"? Known keys: background, ambient, animation, camera, render, output, materials, lights, objects"#,
     ),
     (
         "ambient = 0.1",
@@ -252,6 +252,7 @@ const CASES: &[(&str, &str, &str)] = &[
         "x.toml:16:11: [render]: guiding: expected true or false, found the whole number 1",
     ),
     ("map_size = 1024", "map_size = 1", "x.toml:17:1: render: map_size is 1; it must be from 2 to 8192"),
+    ("map_size = 1024", "map_budget = 0", "x.toml:17:1: render: map_budget is 0; it must be from 1 to 65536 (MiB)"),
     (
         r#"filter = "box""#,
         r#"filter = "blackman_haris""#,
@@ -422,8 +423,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ),
     (
         "sphere = { center = [0, 0.4, 0], radius = 0.3, subdivisions = 4 }",
-        r#"mesh = "a.stl""#,
-        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.stl; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb"#,
+        r#"mesh = "a.off""#,
+        r#"x.toml:48:8: [[objects]] #1 "ball": mesh is /nowhere/a.off; meshes are read from OBJ, PLY, STL and glTF files, whose names end in .obj, .ply, .stl, .gltf or .glb"#,
     ),
     (
         "rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }",
@@ -458,7 +459,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         r#"name = "ground""#,
         r#"nam = "ground""#,
-        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size"#,
+        r#"x.toml:54:1: [[objects]] #2: unknown key "nam"; did you mean "name"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         r#"material = "floor""#,
@@ -503,7 +504,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "rotate = [0, 45, 0]",
         "rotation = [0, 45, 0]",
-        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size"#,
+        r#"x.toml:51:1: [[objects]] #1 "ball": unknown key "rotation"; did you mean "rotate"? Known keys: name, mesh, sphere, rectangle, box, material, material_slots, translate, rotate, scale, map_size, time, animation, variant, crease_angle, map_uvs"#,
     ),
     (
         "scale = 1.5",

@@ -5,14 +5,15 @@ mod gltf_file;
 use std::{f32::consts::PI, fs, path::Path, sync::Arc};
 
 use diacaustic_scene::{
-    Dispersion, GltfFile, LightKind, MaterialKind, ReadOptions, TextureFilter, Warning, Wrap, load_scene, parse_gltf,
+    Dispersion, GltfFile, GltfOptions, LightKind, MaterialKind, PLASTIC_REFLECTANCE, TextureFilter, Warning, Wrap,
+    load_scene, parse_gltf,
 };
 use glam::{Vec2, Vec3};
 use gltf_file::{Builder, TETRAHEDRON, png};
 use serde_json::{Value, json};
 
 fn parse(builder: &Builder) -> Result<GltfFile, String> {
-    parse_gltf(&builder.glb(), Path::new("a.glb"), ReadOptions::default()).map_err(|error| error.to_string())
+    parse_gltf(&builder.glb(), Path::new("a.glb"), &GltfOptions::default()).map_err(|error| error.to_string())
 }
 
 /// A file of one triangle with texture coordinates, and of one material.
@@ -48,7 +49,7 @@ fn said(warnings: &[Warning]) -> String {
 fn json_and_glb_give_the_same() {
     let builder = Builder::tetrahedron();
     let glb = parse(&builder).unwrap();
-    let text = parse_gltf(&builder.gltf(), Path::new("a.gltf"), ReadOptions::default()).unwrap();
+    let text = parse_gltf(&builder.gltf(), Path::new("a.gltf"), &GltfOptions::default()).unwrap();
     assert_eq!(glb, text);
     let [object] = glb.objects.as_slice() else { panic!("{:?}", glb.objects) };
     assert_eq!((object.mesh.triangles.len(), object.mesh.open_edges()), (4, 0));
@@ -178,8 +179,12 @@ fn opaque_materials_have_their_numbers_and_pictures() {
     builder.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
     let file = parse(&builder).unwrap();
     let material = &file.materials[0];
-    let kind =
-        MaterialKind::MetallicRoughness { base_color: Vec3::new(0.5, 0.25, 1.0), metallic: 0.5, roughness: 0.75 };
+    let kind = MaterialKind::MetallicRoughness {
+        base_color: Vec3::new(0.5, 0.25, 1.0),
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 0.5,
+        roughness: 0.75,
+    };
     assert_eq!((material.name.as_str(), &material.kind), ("tile", &kind));
     assert_eq!(material.emission, Vec3::new(10.0, 0.0, 5.0));
     assert_eq!((material.opacity, material.opacity_cutoff), (0.5, Some(0.25)));
@@ -265,11 +270,11 @@ fn metal_and_little_transmission_stay_opaque() {
 #[test]
 fn unsupported_extensions_are_named() {
     let mut builder = with_material(
-        json!({ "name": "car", "extensions": { "KHR_materials_clearcoat": {}, "KHR_materials_sheen": {} } }),
+        json!({ "name": "car", "extensions": { "KHR_materials_iridescence": {}, "KHR_materials_sheen": {} } }),
     );
-    builder.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_materials_sheen", "EXT_other"]);
+    builder.json["extensionsUsed"] = json!(["KHR_materials_iridescence", "KHR_materials_sheen", "EXT_other"]);
     let warnings = said(&parse(&builder).unwrap().warnings);
-    for text in ["KHR_materials_clearcoat of the material \"car\"", "KHR_materials_sheen of", "uses EXT_other"] {
+    for text in ["KHR_materials_iridescence of the material \"car\"", "KHR_materials_sheen of", "uses EXT_other"] {
         assert!(warnings.contains(text), "{warnings}");
     }
     builder.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
@@ -278,13 +283,61 @@ fn unsupported_extensions_are_named() {
 }
 
 #[test]
-fn colored_vertices_are_told_and_white_ones_are_not() {
-    for (color, is_told) in [([1.0f32, 1.0, 1.0], false), ([1.0, 0.5, 1.0], true)] {
-        let mut builder = with_material(json!({}));
-        let colors = builder.floats("VEC3", &[color, color, color].concat());
+fn vertices_have_colors_unless_all_are_white() {
+    let with_colors = |colors: usize, builder: &Builder| {
+        let mut builder = builder.clone();
         builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
-        assert_eq!(said(&parse(&builder).unwrap().warnings).contains("vertex colours"), is_told);
-    }
+        parse(&builder).unwrap()
+    };
+    let mut builder = with_material(json!({ "alphaMode": "BLEND" }));
+    let white = builder.floats("VEC3", &[1.0; 9]);
+    assert!(with_colors(white, &builder).objects[0].mesh.colors.is_empty());
+    let colors = builder.floats("VEC3", &[1.0, 0.5, 0.0, 0.25, 1.0, 1.0, 7.0, -1.0, 0.5]);
+    let file = with_colors(colors, &builder);
+    let expected = [Vec3::new(1.0, 0.5, 0.0), Vec3::new(0.25, 1.0, 1.0), Vec3::new(1.0, 0.0, 0.5)];
+    assert_eq!((file.objects[0].mesh.colors.as_slice(), said(&file.warnings).as_str()), (&expected[..], ""));
+    let bytes = builder.view(&[255, 51, 0, 128, 255, 51, 0, 255, 255, 51, 0, 255], None);
+    let bytes = json!({ "bufferView": bytes, "componentType": 5121, "normalized": true, "count": 3, "type": "VEC4" });
+    let bytes = builder.accessor(bytes);
+    let file = with_colors(bytes, &builder);
+    assert_eq!(file.objects[0].mesh.colors, [Vec3::new(1.0, 0.2, 0.0); 3]);
+    assert!(said(&file.warnings).contains("vertex colours with coverage"), "{}", said(&file.warnings));
+}
+
+#[test]
+fn reflectance_coats_and_unlit_colors_are_those_of_the_extensions() {
+    let kind = |metallic: f32, extensions: Value| {
+        let material = json!({
+            "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": metallic },
+            "extensions": extensions
+        });
+        let file = parse(&with_material(material)).unwrap();
+        (file.materials[0].clone(), said(&file.warnings))
+    };
+    let base_color = Vec3::new(0.5, 0.25, 1.0);
+    let reflectance = |extensions| match kind(0.5, extensions).0.kind {
+        MaterialKind::MetallicRoughness { reflectance, .. } => reflectance,
+        other => panic!("{other:?}"),
+    };
+    let water = reflectance(json!({ "KHR_materials_ior": { "ior": 1.333 } }));
+    assert!((water.x - 0.020373).abs() < 1e-6, "{water}");
+    let specular = json!({ "specularFactor": 0.5, "specularColorFactor": [1, 0, 2] });
+    assert!(reflectance(json!({ "KHR_materials_specular": specular })).abs_diff_eq(Vec3::new(0.02, 0.0, 0.04), 1e-7));
+    let matt = kind(0.0, json!({ "KHR_materials_specular": { "specularFactor": 0 } }));
+    assert_eq!((matt.0.kind, matt.1.as_str()), (MaterialKind::Diffuse { albedo: base_color }, ""));
+
+    let coat = json!({ "KHR_materials_clearcoat": { "clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.125 } });
+    let (varnish, warnings) = kind(0.0, coat.clone());
+    let expected = MaterialKind::Coated { albedo: base_color, ior: 1.5, roughness: 0.125 };
+    assert_eq!((varnish.kind, warnings.as_str()), (expected, ""));
+    let (metal, warnings) = kind(1.0, coat);
+    assert!(matches!(metal.kind, MaterialKind::MetallicRoughness { .. }));
+    assert!(warnings.contains("KHR_materials_clearcoat over metal"), "{warnings}");
+    let (_, warnings) = kind(0.0, json!({ "KHR_materials_clearcoat": { "clearcoatFactor": 0.3 } }));
+    assert!(warnings.contains("has 0.30 of a clear coat"), "{warnings}");
+
+    let (unlit, _) = kind(1.0, json!({ "KHR_materials_unlit": {} }));
+    assert_eq!((unlit.kind, unlit.emission), (MaterialKind::Diffuse { albedo: Vec3::ZERO }, base_color));
 }
 
 #[test]

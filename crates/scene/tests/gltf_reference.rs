@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use diacaustic_scene::{GltfObject, ReadOptions, load_gltf};
+use diacaustic_scene::{GltfObject, GltfOptions, load_gltf};
 use glam::{Vec2, Vec3};
 use serde_json::Value;
 
@@ -21,7 +21,7 @@ fn objects_are_those_that_another_reader_finds() {
     let reference: Value = serde_json::from_str(REFERENCE).unwrap();
     for (name, expected) in reference.as_object().unwrap() {
         let expected = expected.as_object().unwrap();
-        let file = load_gltf(&Path::new(FOLDER).join(name), ReadOptions::default()).unwrap();
+        let file = load_gltf(&Path::new(FOLDER).join(name), &GltfOptions::default()).unwrap();
         assert_eq!(file.objects.len(), expected.len(), "{name}");
         for object in &file.objects {
             let material = &file.materials[object.materials[0]].name;

@@ -2,7 +2,9 @@
 
 use std::{collections::HashSet, fs, path::Path};
 
-use diacaustic_scene::{Dispersion, METALS, Material, MaterialKind, SUBSTANCES, metal, parse_scene, substance};
+use diacaustic_scene::{
+    Dispersion, METALS, Material, MaterialKind, PLASTIC_REFLECTANCE, SUBSTANCES, metal, parse_scene, substance,
+};
 use glam::Vec3;
 
 fn scene(material: &str) -> String {
@@ -47,7 +49,12 @@ fn every_type_is_read_with_all_keys() {
         ),
         (
             "type = 'metallic_roughness'\nbase_color = [0.2, 0.4, 0.6]\nmetallic = 0.25\nroughness = 0.5",
-            MaterialKind::MetallicRoughness { base_color: color, metallic: 0.25, roughness },
+            MaterialKind::MetallicRoughness {
+                base_color: color,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic: 0.25,
+                roughness,
+            },
         ),
     ];
     for (keys, kind) in cases {
@@ -93,7 +100,12 @@ fn omitted_keys_have_defaults() {
         ("type = 'coated'\nalbedo = 1", MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 }),
         (
             "type = 'metallic_roughness'",
-            MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 1.0 },
+            MaterialKind::MetallicRoughness {
+                base_color: Vec3::ONE,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic: 1.0,
+                roughness: 1.0,
+            },
         ),
     ];
     for (keys, kind) in cases {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use diacaustic_scene::{
     Camera, Chart, Dispersion, Error, Layer, Light, LightKind, Material, MaterialKind, Mesh, Object, OutputSettings,
-    RadianceMap, RenderSettings, Scene, Subject, Warning,
+    PLASTIC_REFLECTANCE, RadianceMap, RenderSettings, Scene, Subject, Warning,
 };
 use glam::{Affine3A, Mat3A, Vec2, Vec3, Vec3A};
 
@@ -401,15 +401,30 @@ fn materials_out_of_range_are_refused() {
             "roughness is NaN; it must be from 0 to 1".to_owned(),
         ),
         (
-            MaterialKind::MetallicRoughness { base_color: -half, metallic: 1.0, roughness },
+            MaterialKind::MetallicRoughness {
+                base_color: -half,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic: 1.0,
+                roughness,
+            },
             format!("base_color is [-0.5, -0.5, -0.5]; {to_1}"),
         ),
         (
-            MaterialKind::MetallicRoughness { base_color: half, metallic: 1.1, roughness },
+            MaterialKind::MetallicRoughness {
+                base_color: half,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic: 1.1,
+                roughness,
+            },
             "metallic is 1.1; it must be from 0 to 1".to_owned(),
         ),
         (
-            MaterialKind::MetallicRoughness { base_color: half, metallic: 1.0, roughness: 2.0 },
+            MaterialKind::MetallicRoughness {
+                base_color: half,
+                reflectance: PLASTIC_REFLECTANCE,
+                metallic: 1.0,
+                roughness: 2.0,
+            },
             "roughness is 2; it must be from 0 to 1".to_owned(),
         ),
     ];
@@ -444,7 +459,12 @@ fn only_receivers_have_a_map_size() {
     let varnish = MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 };
     assert!(Material::new("varnish", varnish.clone()).is_caster());
     assert_eq!(with_map(varnish), Ok(()));
-    let metal = MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 0.5 };
+    let metal = MaterialKind::MetallicRoughness {
+        base_color: Vec3::ONE,
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 1.0,
+        roughness: 0.5,
+    };
     assert!(with_map(metal).unwrap_err().starts_with("object \"floor\": map_size is set, but the object is of glass"));
 }
 

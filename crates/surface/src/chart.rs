@@ -57,7 +57,8 @@ impl MapLayout {
         }
     }
 
-    /// Lays out an object's mesh with texels that are `metres` wide on the surface in the world.
+    /// Lays out an object's mesh with texels that are `metres` wide on the surface in the world; charts with wider ones where the map would
+    /// have more than about 10⁵ along a side, which is what single precision tells apart.
     pub fn with_texel_width(object: &Object, metres: f32) -> Self {
         let metres = metres.max(f32::MIN_POSITIVE);
         match given_places(&object.mesh) {
@@ -67,8 +68,8 @@ impl MapLayout {
             }
             None => {
                 let facets = Facets::new(object);
-                // No more texels along a side than the kernels count.
-                let texel = (f64::from(metres) / facets.metres).max(1e-6);
+                let side = (facets.total_area() / FILL).sqrt().max(LONGEST);
+                let texel = (f64::from(metres) / facets.metres).max(side / LARGEST_SIDE);
                 let atlas = Atlas::new(&facets, texel);
                 Self::of_charts(&facets, &atlas, atlas.place(&facets, texel))
             }
@@ -183,6 +184,10 @@ fn metres_per_unit(object: &Object, place: impl Fn(u32) -> Vec2) -> f64 {
     (surface / plane.max(f64::MIN_POSITIVE)).sqrt()
 }
 
+/// The longest that a chart can be, units: the diagonal of the cube from −1 to 1.
+const LONGEST: f64 = 3.47;
+/// Texels along the side of a map.
+const LARGEST_SIDE: f64 = 1e5;
 /// Share of a map's texels that charts fill, at a guess.
 const FILL: f64 = 0.5;
 /// How much wider than guessed texels may become before charts are made anew for the wider ones.

@@ -342,6 +342,16 @@ fn apart(mesh: Mesh) -> Mesh {
 }
 
 #[test]
+fn texels_are_no_finer_than_places_can_say() {
+    let object = shapes::object(shapes::torus_knot(60, 8));
+    let layout = MapLayout::with_texel_width(&object, 1e-9);
+    assert!((50_000..200_000).contains(&layout.width.max(layout.height)), "{} × {}", layout.width, layout.height);
+    assert!(layout.metres_per_texel > 1e-6);
+    let last = Vec2::new((layout.width - 1) as f32, (layout.height - 1) as f32);
+    assert!(layout.corners.iter().flatten().all(|p| p.cmpge(Vec2::ZERO).all() && p.cmple(last).all()));
+}
+
+#[test]
 fn threads_do_not_matter() {
     let object = shapes::object(shapes::scanned(100, 1.0));
     let on = |threads| {
@@ -369,12 +379,11 @@ prop_compose! {
         scale in prop::sample::select(vec![1e-6f32, 1.0, 1e6]),
         picks in prop::collection::vec(prop::array::uniform3(0usize..100), 1..60),
     ) -> Mesh {
-        let mut mesh = Mesh::default();
-        mesh.positions = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
-        mesh.positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
-        let count = mesh.positions.len();
-        mesh.triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
-        mesh
+        let mut positions: Vec<Vec3> = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
+        positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
+        let count = positions.len();
+        let triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
+        Mesh { positions, triangles, ..Mesh::default() }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::{
     Error,
     commands::render::display,
     progress::{Progress, Seconds},
-    session::{Session, Times},
+    session::Session,
 };
 
 /// The file of the whole scene within the folder.
@@ -33,15 +33,15 @@ const SCENE_FILE: &str = "scene.glb";
 /// the standard error what happens.
 ///
 /// # Errors
-/// If the scene cannot be read or rendered, there is no device, or a file cannot be written.
+/// If the scene cannot be read or rendered, there is no device, a file cannot be written, or a signal ends the program, which then writes
+/// nothing.
 pub fn run(arguments: &BakeArguments) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.session.quiet);
     let loaded = load(arguments, progress)?;
     let path = arguments.output.clone().unwrap_or_else(|| default_folder(arguments));
     let mut folder = ObjectFolder::open(&path)?;
-    let times = Times { load: start.elapsed(), ..Times::default() };
-    let mut session = Session::open(progress, loaded, times)?;
+    let mut session = Session::open(&arguments.session, loaded, start.elapsed())?;
     session.emit_photons(None)?;
     let objects = bake_objects(&mut session, arguments)?;
     let files = write_lightmaps(&session, &objects, &mut folder, &path, arguments.png)?;
@@ -86,10 +86,14 @@ fn load(arguments: &BakeArguments, progress: Progress) -> Result<LoadedScene, Er
 /// The lightmap of each receiver.
 fn bake_objects(session: &mut Session, arguments: &BakeArguments) -> Result<Vec<(usize, Lightmap)>, Error> {
     let count = session.built.maps.len() as u64;
-    let mut counter = session.progress.count("lightmaps", count);
+    let mut counter = session.progress.count("lightmaps", 0, count);
     let mut baked = Vec::new();
     let options = BakeOptions { samples: arguments.samples };
     for object in 0..session.scene.objects.len() {
+        // Half of the lightmaps are of no use, so that nothing is written then.
+        if let Some(signal) = session.interruption.signal() {
+            return Err(Error::BakeInterrupted { signal });
+        }
         if let Some(lightmap) = session.renderer.bake(object, &options)? {
             baked.push((object, lightmap));
             counter.set(baked.len() as u64);

@@ -3,11 +3,14 @@
 use std::io::{self, Write as _};
 
 use diacaustic::{
+    Renderer, SceneReport,
     glam::Vec3,
     scene::{LightKind, LoadedScene, Material, MaterialKind, Object, Scene},
+    wgpu::AdapterInfo,
 };
+use diacaustic_headless::adapters;
 
-use crate::{Error, scene_arguments::SceneArguments};
+use crate::{Error, device::DeviceArguments, progress::Metric, scene_arguments::SceneArguments};
 
 /// What `inspect` takes.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
@@ -15,15 +18,21 @@ pub struct InspectArguments {
     /// The scene.
     #[command(flatten)]
     pub scene: SceneArguments,
+
+    /// The device.
+    #[command(flatten)]
+    pub device: DeviceArguments,
 }
 
-/// Prints on the standard output what the scene holds. Needs no device.
+/// Prints on the standard output what the scene holds, what it needs on a device and which devices there are. Needs none.
 ///
 /// # Errors
 /// If the scene cannot be read.
 pub fn run(arguments: &InspectArguments) -> Result<(), Error> {
     let LoadedScene { scene, warnings } = arguments.scene.load()?;
     let mut text = describe(&scene);
+    text.extend(describe_needs(&scene, &Renderer::dry_run(&scene, &arguments.device.renderer_options())?));
+    text.extend(describe_adapters());
     for warning in &warnings {
         text.push(format!("warning: {warning}"));
     }
@@ -56,6 +65,34 @@ fn describe(scene: &Scene) -> Vec<String> {
     lines.push(format!("lights: {}", scene.lights.len()));
     lines.extend(scene.lights.iter().map(|light| format!("  {}: {}", light.name, describe_light(&light.kind))));
     lines
+}
+
+/// What the scene would take on a device.
+fn describe_needs(scene: &Scene, built: &SceneReport) -> Vec<String> {
+    let maps = built.maps.iter().map(|map| {
+        let object = &scene.objects[map.object];
+        let size = match object.map_size.or(scene.settings.map_size) {
+            Some(_) => format!("{} × {} texels", map.width, map.height),
+            None => "texels as fine as the camera sees them".to_owned(),
+        };
+        let sides = if map.layers > 1 { ", both sides" } else { "" };
+        format!("  {}: {size}{sides}", object.name)
+    });
+    let is_open = built.maps.iter().any(|map| scene.objects[map.object].map_size.or(scene.settings.map_size).is_none());
+    let most = if is_open { " at most" } else { "" };
+    let bytes = Metric(built.device_bytes as f64);
+    [format!("on a device: {bytes}B{most}, {} nodes of a hierarchy, {} energy maps", built.bvh_nodes, built.maps.len())]
+        .into_iter()
+        .chain(maps)
+        .collect()
+}
+
+fn describe_adapters() -> Vec<String> {
+    let found = adapters();
+    let adapter = |(number, info): (usize, &AdapterInfo)| {
+        format!("  {number}: {} ({}, {})", info.name, info.backend.to_str(), info.driver_info)
+    };
+    [format!("adapters: {}", found.len())].into_iter().chain(found.iter().enumerate().map(adapter)).collect()
 }
 
 fn triangles(object: &Object) -> usize {

@@ -2,13 +2,15 @@
 
 mod arguments;
 mod chart_borders;
+mod checkpoint;
 mod outputs;
 mod pictures;
+mod refresh;
 mod report;
 
 use std::{
     fmt,
-    path::Path,
+    path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
@@ -18,45 +20,75 @@ use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, wri
 pub use self::arguments::RenderArguments;
 use self::{
     chart_borders::chart_borders,
+    checkpoint::{Checkpoints, resume},
     outputs::Outputs,
     pictures::{NO_LAYERS, can_hold_layers, write_pictures},
+    refresh::Refresh,
     report::Report,
 };
 use crate::{
     Error,
     progress::{Progress, Seconds},
-    session::{Session, Times},
+    session::Session,
 };
 
-/// Renders the scene that the arguments name and writes the files that they ask for. Blocks until all is done; says on the
+/// Renders the scene that the arguments name, or frames of it, and writes the files that they ask for. Blocks until all is done; says on the
 /// standard error what happens.
 ///
 /// # Errors
 /// If the scene cannot be read or rendered, there is no device, or a file cannot be written. What can be checked before
 /// rendering is.
 pub fn run(arguments: &RenderArguments) -> Result<(), Error> {
+    let mut session = None;
+    match arguments.frames.clone() {
+        None => render(arguments, None, &mut session),
+        Some(frames) => frames.into_iter().try_for_each(|frame| render(arguments, Some(frame), &mut session)),
+    }
+}
+
+/// Renders one picture, on the device of the one before.
+fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Session>) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.session.quiet);
     let scene_arguments = &arguments.session.scene;
-    let mut loaded = scene_arguments.load()?;
+    let mut loaded = scene_arguments.load_frame(frame)?;
     override_settings(&mut loaded.scene, arguments);
-    let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files)?;
+    let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files, frame)?;
     warn(progress, arguments, &mut loaded, &outputs);
-    let times = Times { load: start.elapsed(), ..Times::default() };
+    let load = start.elapsed();
 
-    let mut session = Session::open(progress, loaded, times)?;
+    let session = match kept {
+        Some(session) => {
+            session.set_scene(loaded, load)?;
+            session
+        }
+        None => kept.insert(Session::open(&arguments.session, loaded, load)?),
+    };
+    let checkpoints = arguments.checkpoint.as_deref();
+    let checkpoints = checkpoints.map(|path| Checkpoints::new(path, arguments.every, &scene_arguments.scene));
+    if let Some(path) = &arguments.resume {
+        resume(session, path)?;
+    }
+    session.engage(Refresh::new(&outputs.pictures));
+    checkpoints.iter().for_each(|checkpoints| session.engage(checkpoints.clone()));
     let deadline = arguments.time_limit.and_then(|limit| start.checked_add(limit));
     session.refine(deadline)?;
 
     let write_start = Instant::now();
-    let maps = write(&session, &mut outputs)?;
+    let maps = write(session, &mut outputs, frame)?;
+    if let Some(checkpoints) = &checkpoints {
+        checkpoints.write(session)?;
+    }
     session.times.write = write_start.elapsed();
     session.times.total = start.elapsed();
     if let Some(path) = &outputs.statistics {
-        write_report(&session, path, &scene_arguments.scene)?;
+        write_report(session, path, &scene_arguments.scene)?;
     }
     progress.say(Written { outputs: &outputs, maps, time: start.elapsed() });
-    Ok(())
+    match session.interruption.signal() {
+        Some(signal) => Err(Error::Interrupted { signal }),
+        None => Ok(()),
+    }
 }
 
 fn override_settings(scene: &mut Scene, arguments: &RenderArguments) {
@@ -81,24 +113,30 @@ fn warn(progress: Progress, arguments: &RenderArguments, loaded: &mut LoadedScen
 }
 
 /// Writes pictures and energy maps; returns how many maps.
-fn write(session: &Session, outputs: &mut Outputs) -> Result<usize, Error> {
-    let film = session.renderer.film()?;
-    let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
-    write_pictures(&outputs.pictures, &picture, &session.renderer.layers()?, &display(&session.scene.output))?;
+fn write(session: &Session, outputs: &mut Outputs, frame: Option<u32>) -> Result<usize, Error> {
+    write_pictures_of(session, &outputs.pictures)?;
     match &mut outputs.energy_maps {
-        Some(folder) => write_energy_maps(session, folder),
+        Some(folder) => write_energy_maps(session, folder, frame),
         None => Ok(0),
     }
 }
 
-fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder) -> Result<usize, Error> {
+/// Writes the picture so far.
+fn write_pictures_of(session: &Session, files: &[PathBuf]) -> Result<(), Error> {
+    let film = session.renderer.film()?;
+    let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
+    write_pictures(files, &picture, &session.renderer.layers()?, &display(&session.scene.output))
+}
+
+fn write_energy_maps(session: &Session, folder: &mut EnergyMapFolder, frame: Option<u32>) -> Result<usize, Error> {
     let mut count = 0;
     for (index, object) in session.scene.objects.iter().enumerate() {
         let Some(map) = session.renderer.energy_map(index)? else { continue };
         let texels: Vec<_> = map.resampled().into_iter().map(|texel| texel.as_vec3().to_array()).collect();
         let borders = session.renderer.map_layout(index)?.map_or_else(Vec::new, chart_borders);
         let irradiance = Irradiance { width: map.width, height: map.height, texels: &texels, chart_borders: &borders };
-        folder.write(&object.name, &irradiance)?;
+        let name = object.name.clone() + &frame.map(|frame| format!(".{frame:04}")).unwrap_or_default();
+        folder.write(&name, &irradiance)?;
         count += 1;
     }
     Ok(count)
@@ -113,6 +151,7 @@ fn write_report(session: &Session, path: &Path, scene_file: &Path) -> Result<(),
         counted: &session.renderer.statistics()?,
         times: session.times,
         time_limit_reached: session.time_limit_reached,
+        interrupted: session.interruption.signal().is_some(),
         error: session.error,
     };
     Ok(write_statistics(path, &report.statistics())?)

@@ -1,7 +1,7 @@
 //! Work for the device in pieces, between which progress shows and a time limit can end it.
 
 use std::{
-    ops::Range,
+    ops::{ControlFlow, Range},
     time::{Duration, Instant},
 };
 
@@ -12,20 +12,22 @@ const FIRST_PHOTONS: u32 = 18;
 /// How many times as long as the first a chunk may become.
 const GROWTH: u64 = 64;
 
-/// Calls `work` with pieces of 0..`total`, the first of `first` numbers, until all are done or the next piece would probably
-/// end after the deadline; at least once if there are any. Returns how many are done.
+/// Calls `work` with pieces of some numbers, the first of `first` numbers, until all are done, it says to stop, or the next piece would
+/// probably end after the deadline; at least once if there are any.
 pub(crate) fn in_chunks<E>(
-    total: u64,
+    numbers: Range<u64>,
     first: u64,
     deadline: Option<Instant>,
-    mut work: impl FnMut(Range<u64>) -> Result<(), E>,
-) -> Result<u64, E> {
+    mut work: impl FnMut(Range<u64>) -> Result<ControlFlow<()>, E>,
+) -> Result<(), E> {
     let mut chunk = first;
-    let mut done = 0;
-    while done < total {
-        let end = total.min(done.saturating_add(chunk));
+    let mut done = numbers.start;
+    while done < numbers.end {
+        let end = numbers.end.min(done.saturating_add(chunk));
         let start = Instant::now();
-        work(done..end)?;
+        if work(done..end)?.is_break() {
+            break;
+        }
         let now = Instant::now();
         done = end;
         if deadline.is_some_and(|deadline| now + (now - start) > deadline) {
@@ -35,7 +37,7 @@ pub(crate) fn in_chunks<E>(
             chunk *= 2;
         }
     }
-    Ok(done)
+    Ok(())
 }
 
 /// How many photons to emit when `asked` are asked for and lights take `turns`: each its share exactly.
@@ -60,15 +62,22 @@ mod tests {
 
     use super::*;
 
+    /// The pieces that are done of some numbers.
+    fn pieces(numbers: Range<u64>, first: u64, deadline: Option<Instant>, pause: Duration) -> Vec<Range<u64>> {
+        let mut pieces = Vec::new();
+        in_chunks(numbers, first, deadline, |piece| {
+            pieces.push(piece);
+            sleep(pause);
+            Ok::<_, Infallible>(ControlFlow::Continue(()))
+        })
+        .unwrap_or_else(|never| match never {});
+        pieces
+    }
+
     #[test]
     fn chunks_cover_everything_once_and_grow() {
-        let mut pieces = Vec::new();
-        let done = in_chunks(1000, 3, None, |piece| {
-            pieces.push(piece);
-            Ok::<_, Infallible>(())
-        });
-        assert_eq!(done, Ok(1000));
-        assert_eq!(pieces[..3], [0..3, 3..9, 9..21]);
+        let pieces = pieces(100..1000, 3, None, Duration::ZERO);
+        assert_eq!(pieces[..3], [100..103, 103..109, 109..121]);
         assert!(pieces.windows(2).all(|pair| pair[0].end == pair[1].start));
         assert!(pieces.iter().all(|piece| piece.end - piece.start <= 3 * GROWTH));
         assert_eq!(pieces.last().unwrap().end, 1000);
@@ -76,22 +85,25 @@ mod tests {
 
     #[test]
     fn a_deadline_stops_after_one_chunk_at_least() {
-        let count = |deadline, pause| {
-            in_chunks(1000, 1, Some(deadline), |_| {
-                sleep(pause);
-                Ok::<_, Infallible>(())
-            })
-        };
-        assert_eq!(count(Instant::now(), Duration::ZERO), Ok(1));
+        let count = |deadline, pause| pieces(0..1000, 1, Some(deadline), pause).last().unwrap().end;
+        assert_eq!(count(Instant::now(), Duration::ZERO), 1);
         // The second chunk would end at 120 ms.
-        assert_eq!(count(Instant::now() + Duration::from_millis(100), Duration::from_millis(60)), Ok(1));
-        assert_eq!(count(Instant::now() + Duration::from_secs(3600), Duration::ZERO), Ok(1000));
+        assert_eq!(count(Instant::now() + Duration::from_millis(100), Duration::from_millis(60)), 1);
+        assert_eq!(count(Instant::now() + Duration::from_secs(3600), Duration::ZERO), 1000);
     }
 
     #[test]
-    fn an_error_ends_the_work() {
-        assert_eq!(in_chunks(10, 1, None, |piece| if piece.start == 0 { Ok(()) } else { Err("no") }), Err("no"));
-        assert_eq!(in_chunks(0, 1, None, |_| Err("never called")), Ok(0));
+    fn an_error_or_a_wish_ends_the_work() {
+        let mut calls = 0;
+        let mut work = |result| {
+            in_chunks(0..10, 1, None, |_| {
+                calls += 1;
+                result
+            })
+        };
+        assert_eq!((work(Ok(ControlFlow::Break(()))), work(Err("no"))), (Ok(()), Err("no")));
+        assert_eq!(calls, 2);
+        assert!(pieces(7..7, 1, None, Duration::ZERO).is_empty());
     }
 
     #[test]

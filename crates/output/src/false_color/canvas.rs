@@ -1,6 +1,6 @@
 //! A picture to draw on.
 
-use font8x8::{BASIC_FONTS, LATIN_FONTS, UnicodeFonts as _};
+use font8x8::{BASIC_FONTS, UnicodeFonts as _};
 
 /// Red, green and blue, sRGB.
 pub(super) type Color = [u8; 3];
@@ -47,10 +47,10 @@ impl Canvas {
         }
     }
 
-    /// Writes text of letters enlarged by a whole factor, its upper left corner at a place.
+    /// Writes ASCII text of letters enlarged by a whole factor, its upper left corner at a place; other letters are blocks.
     pub fn text(&mut self, [left, top]: [u32; 2], text: &str, size: u32, color: Color) {
         for (place, letter) in text.chars().enumerate() {
-            let glyph = BASIC_FONTS.get(letter).or_else(|| LATIN_FONTS.get(letter)).unwrap_or([0xff; 8]);
+            let glyph = BASIC_FONTS.get(letter).unwrap_or([0xff; 8]);
             for (row, bits) in glyph.iter().enumerate() {
                 for column in (0..8).filter(|column| bits >> column & 1 == 1) {
                     let x = left + (place as u32 * LETTER + column) * size;
@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn letters_stand_upright_and_lines_end_where_they_should() {
         let mut canvas = Canvas::new(20, 10, [0; 3]);
-        canvas.text([1, 1], "L²", 1, [255; 3]);
+        canvas.text([1, 1], "L^", 1, [255; 3]);
         let is_set = |canvas: &Canvas, x: usize, y: usize| canvas.pixels[y * 20 + x] == [255; 3];
         // The stem of an L is on the left, its foot at the bottom.
         assert!((1..7).all(|y| is_set(&canvas, 2, y)) && !is_set(&canvas, 6, 2) && is_set(&canvas, 6, 7));

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use diacaustic_scene::MaterialKind;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::snell::reflect;
 use crate::spectrum::Spectrum;
@@ -55,8 +55,8 @@ impl Base {
 }
 
 /// Reflectance of glTF's model at normal incidence.
-pub(super) fn metallic_f0(base_color: DVec3, metallic: f64) -> DVec3 {
-    0.04 * (1.0 - metallic) + metallic * base_color
+pub(super) fn metallic_f0(base_color: DVec3, metallic: f64, reflectance: Vec3) -> DVec3 {
+    (1.0 - metallic) * reflectance.as_dvec3() + metallic * base_color
 }
 
 /// ρ\* of a material's base, which makes up for the light that its specular lobe keeps from entering and leaving; zero
@@ -71,9 +71,9 @@ fn resolved_albedo(prepared: &PreparedMaterial, factors: &Factors) -> DVec3 {
             let inside = 1.0 - prepared.entering / (n * n);
             albedo / (n * n * (1.0 - albedo * inside))
         }
-        MaterialKind::MetallicRoughness { base_color, metallic, .. } => {
+        MaterialKind::MetallicRoughness { base_color, metallic, reflectance, .. } => {
             let (color, metallic) = (base_color.as_dvec3() * factors.color, f64::from(metallic) * factors.metallic);
-            let f0 = metallic_f0(color, metallic);
+            let f0 = metallic_f0(color, metallic, reflectance);
             // The remainder is 0 where nothing enters: f₀ is 1 for white metal alone.
             let entering = 1.0 - (f0 + (1.0 - f0) / 21.0);
             let albedo = (1.0 - metallic) * color;

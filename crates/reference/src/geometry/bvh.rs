@@ -220,7 +220,15 @@ mod tests {
             .map(|index| {
                 let middle = point(2.0);
                 let corners = [middle + point(0.4), middle + point(0.4), middle + point(0.4)];
-                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None, uvs: None }
+                Triangle {
+                    object: 0,
+                    index,
+                    corners,
+                    normal_geometric: DVec3::Z,
+                    normals: None,
+                    uvs: None,
+                    colors: None,
+                }
             })
             .collect()
     }
@@ -262,7 +270,15 @@ mod tests {
             .map(|index| {
                 let offset = index as f64 * DVec3::Z;
                 let corners = corners.map(|p| p + offset);
-                Triangle { object: 0, index, corners, normal_geometric: DVec3::Z, normals: None, uvs: None }
+                Triangle {
+                    object: 0,
+                    index,
+                    corners,
+                    normal_geometric: DVec3::Z,
+                    normals: None,
+                    uvs: None,
+                    colors: None,
+                }
             })
             .collect();
         let bvh = Bvh::build(&triangles);

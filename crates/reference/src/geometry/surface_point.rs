@@ -36,13 +36,16 @@ impl World<'_> {
         cos.max(0.0) / -direction.dot(facing.normal_geometric)
     }
 
-    /// What the material's pictures multiply its numbers by.
+    /// What the material's pictures and the mesh's vertex colours multiply the material's numbers by.
     pub(crate) fn factors(&self, hit: &Hit) -> Factors {
         let prepared = self.prepared(hit.triangle);
-        if !prepared.varies {
-            return Factors::ONE;
-        }
-        Factors::at(&prepared.material.textures, self.uv(hit.triangle, hit.barycentric))
+        let pictures = match prepared.varies {
+            true => Factors::at(&prepared.material.textures, self.uv(hit.triangle, hit.barycentric)),
+            false => Factors::ONE,
+        };
+        let colors = self.triangles[hit.triangle].colors;
+        let tint = colors.map_or(DVec3::ONE, |colors| weighted(colors, hit.barycentric));
+        Factors { color: pictures.color * tint, ..pictures }
     }
 
     /// Radiance that a point of a triangle's front sends in each direction, W/(m² sr), given that the point stands.

@@ -26,6 +26,8 @@ pub struct Triangle {
     pub normals: Option<[DVec3; 3]>,
     /// Texture coordinates of the corners, or none on a mesh without.
     pub uvs: Option<[DVec2; 3]>,
+    /// Factors on the material's colour at the corners, or none on a mesh without vertex colours.
+    pub colors: Option<[DVec3; 3]>,
 }
 
 /// A surface point as a ray sees it: every normal is on the side that the ray comes from.
@@ -115,7 +117,8 @@ fn flatten_object(object: usize, placed: &Object) -> Vec<Triangle> {
                 .map(|v| (normal_from_object * mesh.normals[v as usize].as_dvec3()).normalize_or_zero())
         });
         let uvs = (!mesh.uvs.is_empty()).then(|| mesh.triangles[index].map(|v| mesh.uvs[v as usize].as_dvec2()));
-        Triangle { object, index, corners, normal_geometric, normals, uvs }
+        let colors = mesh.colors.first().map(|_| mesh.triangles[index].map(|v| mesh.colors[v as usize].as_dvec3()));
+        Triangle { object, index, corners, normal_geometric, normals, uvs, colors }
     };
     (0..mesh.triangles.len()).map(place).collect()
 }
@@ -135,7 +138,7 @@ mod tests {
 
     fn triangle(normals: Option<[DVec3; 3]>) -> Triangle {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals, uvs: None }
+        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals, uvs: None, colors: None }
     }
 
     #[test]

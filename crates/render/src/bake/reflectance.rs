@@ -3,7 +3,7 @@
 use diacaustic_scene::{Material, MaterialKind};
 use glam::{Vec2, Vec3};
 
-use crate::material_records::{DIELECTRIC_F0, mean_reflectance, reflectance, under_coat};
+use crate::material_records::{mean_reflectance, reflectance, under_coat};
 
 /// The share of light from everywhere that a material's base sends out along its normal, at texture coordinates `uv`: a receiver whose
 /// lightmap holds E shows about this share of E/π. It is exact for matt surfaces; a gloss over the base takes a share that depends on
@@ -20,10 +20,10 @@ pub fn base_reflectance(material: &Material, uv: Vec2) -> Vec3 {
             let passes = (1.0 - reflectance(1.0, n)) * (1.0 - mean_reflectance(n));
             passes as f32 * under_coat(albedo * picture, ior)
         }
-        MaterialKind::MetallicRoughness { base_color, metallic, .. } => {
+        MaterialKind::MetallicRoughness { base_color, reflectance: normal, metallic, .. } => {
             let metallic = metallic * textures.metallic.as_ref().map_or(1.0, |texture| texture.number_at(uv));
             let color = base_color * picture;
-            (1.0 - metallic) * color * (Vec3::ONE - Vec3::splat(DIELECTRIC_F0).lerp(color, metallic))
+            (1.0 - metallic) * color * (Vec3::ONE - normal.lerp(color, metallic))
         }
         MaterialKind::Mirror { .. }
         | MaterialKind::Conductor { .. }

@@ -1,6 +1,6 @@
 //! The bytes of a file: in the GLB container, in the text itself as data URIs, or in files beside it.
 
-use std::borrow::Cow;
+use std::{borrow::Cow, collections::HashMap};
 
 use base64::{
     Engine as _, alphabet,
@@ -9,7 +9,10 @@ use base64::{
 use gltf_json::Root;
 use percent_encoding::percent_decode_str;
 
-use super::fault::{Fault, Result, entry, place};
+use super::{
+    fault::{Fault, Result, entry, place},
+    meshopt::{self, Decoded},
+};
 use crate::folder::Folder;
 
 /// Base64 as data URIs have it, with or without padding.
@@ -22,6 +25,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(super) struct Buffers<'a> {
     root: &'a Root,
     buffers: Vec<Cow<'a, [u8]>>,
+    /// The views that are stored compressed.
+    decoded: HashMap<usize, Decoded>,
 }
 
 /// A part of a buffer.
@@ -53,12 +58,21 @@ impl<'a> Buffers<'a> {
             }
             buffers.push(bytes);
         }
-        Ok(Self { root, buffers })
+        let mut decoded = HashMap::new();
+        for (index, view) in root.buffer_views.iter().enumerate() {
+            let place = place("bufferViews", index, view.name.as_deref());
+            let extensions = view.extensions.as_ref().map(|extensions| &extensions.others);
+            decoded.extend(meshopt::decode(extensions, &buffers, &place)?.map(|decoded| (index, decoded)));
+        }
+        Ok(Self { root, buffers, decoded })
     }
 
     /// The part of a buffer that `bufferViews[index]` stands for; `user` names what asks for it.
     pub(super) fn view(&self, index: usize, user: &str) -> Result<View<'_>> {
         let view = entry(&self.root.buffer_views, "bufferViews", index, user)?;
+        if let Some(Decoded { bytes, stride }) = self.decoded.get(&index) {
+            return Ok(View { bytes, stride: Some(view.byte_stride.map_or(*stride, |stride| stride.0)) });
+        }
         let place = place("bufferViews", index, view.name.as_deref());
         let buffer = entry(&self.buffers, "buffers", view.buffer.value(), &place)?;
         let (start, length) = (view.byte_offset.map_or(0, |offset| offset.0), view.byte_length.0);

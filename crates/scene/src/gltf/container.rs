@@ -8,16 +8,21 @@ use super::fault::{Fault, Result};
 const MOST_JSON_OBJECTS: usize = 4_000_000;
 
 /// Extensions that are read in full, or in which nothing is lost when they are passed over.
-const SUPPORTED: [&str; 9] = [
+pub(super) const SUPPORTED: [&str; 14] = [
     "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
     "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_specular",
     "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
 ];
 
 /// The parts of a file.
@@ -94,7 +99,7 @@ pub(super) fn check_extensions(root: &Root) -> Result<Vec<&str>> {
     let is_unknown = |name: &&String| !SUPPORTED.contains(&name.as_str());
     if let Some(name) = root.extensions_required.iter().find(is_unknown) {
         let advice = match name.as_str() {
-            "KHR_draco_mesh_compression" | "EXT_meshopt_compression" => "export it without compressed meshes",
+            "KHR_draco_mesh_compression" | "KHR_meshopt_compression" => "export it without compressed meshes",
             "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" | "MSFT_texture_dds" => {
                 "export it with PNG or JPEG pictures"
             }

@@ -1,37 +1,30 @@
-//! Materials: metallic-roughness, and glass by its extensions.
+//! Materials: metallic-roughness, and glass, coats and more by its extensions.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+mod layers;
+mod numbers;
+mod pictures;
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use glam::Vec3;
-use gltf_json::{
-    Root,
-    extensions::{material::Volume, texture::TextureTransform},
-    material::AlphaMode,
-    texture::Info,
-    validation::Checked,
-};
+use gltf_json::{Root, material::AlphaMode};
 
+use self::{
+    layers::Layers,
+    numbers::{Glass, Numbers, absorption, priority, share},
+    pictures::{ALPHA, METALLIC, Pictures, ROUGHNESS, Uses},
+};
 use super::{
+    container::SUPPORTED,
     fault::{Fault, Result, entry, place, shortened},
     textures::{TextureReader, Use},
 };
-use crate::{ColorSpace, Dispersion, Material, MaterialKind, NormalMap, Texture, Textures};
+use crate::{ColorSpace, Dispersion, Material, MaterialKind, NormalMap, PLASTIC_REFLECTANCE, Texture, Textures};
 
 /// Index of refraction of a material that states none.
 const DEFAULT_IOR: f32 = 1.5;
-/// Reflectance along the normal that the metallic-roughness model has where there is no metal.
-const DEFAULT_REFLECTANCE: f32 = 0.04;
-/// How far another reflectance may be from it without a word.
-const REFLECTANCE_TOLERANCE: f32 = 0.02;
-/// What remains of a colour that absorbs everything, so that its absorption is finite.
-const LEAST_ATTENUATION: f32 = 1e-6;
 
 const DISPERSION: &str = "KHR_materials_dispersion";
-
-/// The channels in which pictures hold the roughness, the share of metal and coverage.
-const ROUGHNESS: usize = 1;
-const METALLIC: usize = 2;
-const ALPHA: usize = 3;
 
 /// Reads materials; holds those read and what it found of interest.
 pub(super) struct MaterialReader<'a, 'b> {
@@ -43,7 +36,7 @@ pub(super) struct MaterialReader<'a, 'b> {
     pub(super) materials: Vec<Material>,
     indices: HashMap<(Option<usize>, bool), usize>,
     /// Unsupported extensions, each with the materials that have it.
-    pub(super) unsupported: BTreeMap<String, Vec<String>>,
+    pub(super) unsupported: BTreeMap<String, BTreeSet<String>>,
     pub(super) warnings: Vec<Fault>,
 }
 
@@ -114,7 +107,11 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let glass = self.glass(index, &numbers, &pictures, &place)?;
         let name = self.names[index].clone();
         let is_volume = is_closed && self.is_volume(Some(index));
-        let Some(glass) = glass else { return Ok(opaque(name, &numbers, pictures)) };
+        let others = source.extensions.as_ref().map(|extensions| &extensions.others);
+        let ior = source.extensions.as_ref().and_then(|extensions| extensions.ior.as_ref()).map(|ior| ior.ior.0);
+        let layers = Layers::of(others, ior, &place)?;
+        self.warn_of_layers(&layers, glass.is_some(), &place);
+        let Some(glass) = glass else { return Ok(self.opaque(name, &numbers, &layers, pictures, &place)) };
         if !is_volume && self.is_volume(Some(index)) {
             self.warn(&place, "is on a surface that is not closed; there its glass has no thickness (thin_walled)");
             return Ok(self.sheet(format!("{name} (thin-walled)"), glass, &numbers, pictures, &place));
@@ -129,12 +126,13 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
 
     fn note_unsupported(&mut self, index: usize) {
         let extensions = self.root.materials[index].extensions.iter();
-        for name in extensions.flat_map(|extensions| extensions.others.keys()).filter(|name| *name != DISPERSION) {
+        for name in extensions
+            .flat_map(|extensions| extensions.others.keys())
+            .filter(|name| !SUPPORTED.contains(&name.as_str()))
+        {
             let users = self.unsupported.entry(name.clone()).or_default();
             let name = self.names[index].clone();
-            if !users.contains(&name) {
-                users.push(name);
-            }
+            users.insert(name);
         }
     }
 
@@ -164,6 +162,9 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
             color: color.map(|(_, texture)| texture),
             metal: read(&uses.metal, "metallicRoughnessTexture", ColorSpace::Linear)?.map(|(_, texture)| texture),
             emission: read(&uses.emission, "emissiveTexture", ColorSpace::Srgb)?.map(|(_, texture)| texture),
+            coat: read(&uses.coat, "clearcoatTexture", ColorSpace::Linear)?.map(|(_, texture)| texture),
+            coat_roughness: read(&uses.coat_roughness, "clearcoatRoughnessTexture", ColorSpace::Linear)?
+                .map(|(_, texture)| texture),
             transmission: read(&uses.transmission, "transmissionTexture", ColorSpace::Linear)?
                 .map(|(_, texture)| texture),
             normal: read(&uses.normal, "normalTexture", ColorSpace::Linear)?
@@ -175,10 +176,7 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
     fn glass(&mut self, index: usize, numbers: &Numbers, pictures: &Pictures, place: &str) -> Result<Option<Glass>> {
         let Some(extensions) = &self.root.materials[index].extensions else { return Ok(None) };
         let ior = extensions.ior.as_ref().map_or(DEFAULT_IOR, |ior| ior.ior.0);
-        let Some(transmission) = &extensions.transmission else {
-            self.warn_of_reflectance(ior, place);
-            return Ok(None);
-        };
+        let Some(transmission) = &extensions.transmission else { return Ok(None) };
         let factor = share(transmission.transmission_factor.0, "transmissionFactor", place)?;
         let mean = |texture: &Option<Texture>, channel| texture.as_ref().map_or(1.0, |t| t.image.mean()[channel]);
         // Metal is opaque, whatever its transmission.
@@ -214,14 +212,78 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         }))
     }
 
-    fn warn_of_reflectance(&mut self, ior: f32, place: &str) {
-        let reflectance = ((ior - 1.0) / (ior + 1.0)).powi(2);
-        if ((reflectance - DEFAULT_REFLECTANCE).abs() > REFLECTANCE_TOLERANCE) && ior > 0.0 {
+    fn warn_of_layers(&mut self, layers: &Layers, is_glass: bool, place: &str) {
+        if is_glass && (layers.has_specular || layers.has_specular_pictures) {
+            self.warn(place, "is glass and has KHR_materials_specular; glass reflects by its ior alone");
+        } else if layers.has_specular_pictures {
+            self.warn(place, "has pictures in KHR_materials_specular, which are not read; its factors alone are used");
+        }
+        if is_glass && layers.coat.is_some() {
+            self.warn(place, "is glass and has KHR_materials_clearcoat; it shows without the coat");
+        }
+        if is_glass && layers.is_unlit {
+            self.warn(place, "is glass and has KHR_materials_unlit; it shows as glass");
+        }
+    }
+
+    /// A material through which no light passes.
+    fn opaque(
+        &mut self,
+        name: String,
+        numbers: &Numbers,
+        layers: &Layers,
+        pictures: Pictures,
+        place: &str,
+    ) -> Material {
+        let Numbers { base_color, metallic, roughness, mut emission, .. } = *numbers;
+        let mut emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
+        let coat = self.coat(numbers, layers, &pictures, place);
+        let mut textures = pictures.textures();
+        let has_no_metal = metallic == 0.0;
+        let kind = if layers.is_unlit {
+            emission = base_color;
+            emission_picture = textures.color.take();
+            textures = Textures::default();
+            MaterialKind::Diffuse { albedo: Vec3::ZERO }
+        } else if let Some(roughness) = coat {
+            textures.roughness =
+                pictures.coat_roughness.clone().map(|texture| Texture { channel: ROUGHNESS, ..texture });
+            MaterialKind::Coated { albedo: base_color, ior: DEFAULT_IOR, roughness }
+        } else if has_no_metal && layers.reflectance == Vec3::ZERO {
+            textures.roughness = None;
+            MaterialKind::Diffuse { albedo: base_color }
+        } else {
+            textures.metallic = pictures.channel(METALLIC);
+            MaterialKind::MetallicRoughness { base_color, reflectance: layers.reflectance, metallic, roughness }
+        };
+        textures.emission = emission_picture;
+        let mut material = Material { emission, textures, ..Material::new(name, kind) };
+        set_opacity(&mut material, numbers, &pictures);
+        material
+    }
+
+    /// The roughness of a clear coat over what is no metal, if there is one.
+    fn coat(&mut self, numbers: &Numbers, layers: &Layers, pictures: &Pictures, place: &str) -> Option<f32> {
+        let [factor, roughness] = layers.coat?;
+        if numbers.metallic > 0.0 && pictures.metal.as_ref().is_none_or(|texture| texture.image.most()[METALLIC] > 0.0)
+        {
             self.warn(
                 place,
-                format!("has the ior {ior}, which opaque materials do not support; it reflects as with 1.5"),
+                "has KHR_materials_clearcoat over metal, which is not supported; it shows without the coat",
+            );
+            return None;
+        }
+        let strength = factor * pictures.coat.as_ref().map_or(1.0, |texture| texture.image.mean().x);
+        if strength < 0.999 {
+            let fate = if strength < 0.5 { "without the coat" } else { "with a whole one" };
+            self.warn(
+                place,
+                format!(
+                    "has {strength:.2} of a clear coat (in the mean), which is not supported in part; it shows {fate}"
+                ),
             );
         }
+        (strength >= 0.5).then_some(roughness)
     }
 
     fn sheet(&mut self, name: String, glass: Glass, numbers: &Numbers, pictures: Pictures, place: &str) -> Material {
@@ -271,20 +333,6 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
     }
 }
 
-/// A material through which no light passes.
-fn opaque(name: String, numbers: &Numbers, pictures: Pictures) -> Material {
-    let Numbers { base_color, metallic, roughness, emission, .. } = *numbers;
-    let emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
-    let mut material = Material {
-        emission,
-        ..Material::new(name, MaterialKind::MetallicRoughness { base_color, metallic, roughness })
-    };
-    material.textures =
-        Textures { emission: emission_picture, metallic: pictures.channel(METALLIC), ..pictures.textures() };
-    set_opacity(&mut material, numbers, &pictures);
-    material
-}
-
 /// Sets what an alpha mode other than OPAQUE makes of the coverage.
 fn set_opacity(material: &mut Material, numbers: &Numbers, pictures: &Pictures) {
     if numbers.alpha_mode == AlphaMode::Opaque {
@@ -297,7 +345,12 @@ fn set_opacity(material: &mut Material, numbers: &Numbers, pictures: &Pictures) 
 
 /// What a surface without a material is.
 fn default_kind() -> MaterialKind {
-    MaterialKind::MetallicRoughness { base_color: Vec3::ONE, metallic: 1.0, roughness: 1.0 }
+    MaterialKind::MetallicRoughness {
+        base_color: Vec3::ONE,
+        reflectance: PLASTIC_REFLECTANCE,
+        metallic: 1.0,
+        roughness: 1.0,
+    }
 }
 
 /// A name for each material, made to differ by numbers.
@@ -317,166 +370,4 @@ fn unique_names(root: &Root) -> Vec<String> {
         names.push(name);
     }
     names
-}
-
-/// The numbers of the metallic-roughness model.
-struct Numbers {
-    base_color: Vec3,
-    metallic: f32,
-    roughness: f32,
-    emission: Vec3,
-    alpha: f32,
-    alpha_mode: AlphaMode,
-    alpha_cutoff: f32,
-}
-
-impl Numbers {
-    fn of(source: &gltf_json::Material, place: &str) -> Result<Self> {
-        let model = &source.pbr_metallic_roughness;
-        let [r, g, b, alpha] = model.base_color_factor.0;
-        for channel in [r, g, b, alpha] {
-            share(channel, "baseColorFactor", place)?;
-        }
-        let strength = source.extensions.as_ref().and_then(|extensions| extensions.emissive_strength.as_ref());
-        let strength = strength.map_or(1.0, |strength| strength.emissive_strength.0);
-        let emission = Vec3::from(source.emissive_factor.0) * strength;
-        if !emission.is_finite() || emission.cmplt(Vec3::ZERO).any() {
-            return Err(Fault::new(place, format!("has the emission {emission}; it must be finite and 0 or greater")));
-        }
-        let Checked::Valid(alpha_mode) = source.alpha_mode else {
-            return Err(Fault::new(place, "has an unknown alphaMode; it must be OPAQUE, MASK or BLEND"));
-        };
-        let cutoff = source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
-        if !(cutoff >= 0.0 && cutoff.is_finite()) {
-            return Err(Fault::new(place, format!("has the alphaCutoff {cutoff}; it must be 0 or greater")));
-        }
-        Ok(Self {
-            base_color: Vec3::new(r, g, b),
-            metallic: share(model.metallic_factor.0, "metallicFactor", place)?,
-            roughness: share(model.roughness_factor.0, "roughnessFactor", place)?,
-            emission,
-            // Above a cutoff of 1 nothing shows.
-            alpha: if cutoff > 1.0 && alpha_mode == AlphaMode::Mask { 0.0 } else { alpha },
-            alpha_mode,
-            alpha_cutoff: cutoff.min(1.0),
-        })
-    }
-}
-
-/// A number from 0 to 1.
-fn share(number: f32, key: &str, place: &str) -> Result<f32> {
-    if (0.0..=1.0).contains(&number) {
-        return Ok(number);
-    }
-    Err(Fault::new(place, format!("has {number} as its {key}; it must be from 0 to 1")))
-}
-
-/// What glass does to light, besides its colour and roughness.
-struct Glass {
-    ior: f32,
-    dispersion: Dispersion,
-    /// Absorption coefficient, 1/m.
-    absorption: Vec3,
-}
-
-/// The absorption coefficient, 1/m, that leaves the attenuation colour after the attenuation distance.
-fn absorption(volume: &Volume, place: &str) -> Result<Vec3> {
-    let (color, distance) = (volume.attenuation_color.0, volume.attenuation_distance.0);
-    for channel in color {
-        share(channel, "attenuationColor", place)?;
-    }
-    if distance.is_nan() || distance <= 0.0 {
-        return Err(Fault::new(place, format!("has an attenuationDistance of {distance}; it must be greater than 0")));
-    }
-    let coefficients = color.map(|channel| -channel.max(LEAST_ATTENUATION).ln() / distance);
-    // −ln 1 is −0.
-    Ok(Vec3::from(coefficients).max(Vec3::ZERO).min(Vec3::splat(f32::MAX)))
-}
-
-/// The rank of a volume, from a material's `extras`: `{ "priority": 2 }`.
-fn priority(extras: Option<&str>, place: &str) -> Result<i32> {
-    let extras: serde_json::Value = extras.and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default();
-    let Some(priority) = extras.get("priority") else { return Ok(0) };
-    let whole = priority.as_i64().and_then(|number| i32::try_from(number).ok());
-    whole.ok_or_else(|| Fault::new(place, "has extras.priority, which must be a whole number of 32 bits"))
-}
-
-/// The pictures that a material names.
-struct Uses {
-    color: Option<Use>,
-    metal: Option<Use>,
-    normal: Option<Use>,
-    normal_scale: f32,
-    emission: Option<Use>,
-    transmission: Option<Use>,
-}
-
-impl Uses {
-    fn of(source: &gltf_json::Material, place: &str) -> Result<Self> {
-        let model = &source.pbr_metallic_roughness;
-        let info = |info: &Option<Info>| info.as_ref().map(Use::of);
-        let normal = source.normal_texture.as_ref();
-        let normal_scale = normal.map_or(1.0, |normal| normal.scale);
-        if !normal_scale.is_finite() {
-            return Err(Fault::new(place, "has a normalTexture whose scale is not finite"));
-        }
-        let normal = normal.map(|normal| {
-            let others =
-                normal.extensions.as_ref().and_then(|extensions| extensions.others.get("KHR_texture_transform"));
-            let transform = others.map(|value| gltf_json::deserialize::from_value::<TextureTransform>(value.clone()));
-            let transform = transform.transpose().map_err(|error| {
-                Fault::new(place, format!("has a normalTexture with a damaged KHR_texture_transform: {error}"))
-            })?;
-            Ok(Use::new(normal.index.value(), normal.tex_coord, transform))
-        });
-        let transmission = source.extensions.as_ref().and_then(|extensions| extensions.transmission.as_ref());
-        Ok(Self {
-            color: info(&model.base_color_texture),
-            metal: info(&model.metallic_roughness_texture),
-            normal: normal.transpose()?,
-            normal_scale,
-            emission: info(&source.emissive_texture),
-            transmission: transmission.and_then(|transmission| info(&transmission.transmission_texture)),
-        })
-    }
-
-    fn all(&self) -> impl Iterator<Item = &Use> {
-        [&self.color, &self.metal, &self.normal, &self.emission].into_iter().flatten()
-    }
-
-    fn by_key(&mut self) -> [(&'static str, &mut Option<Use>); 4] {
-        [
-            ("baseColorTexture", &mut self.color),
-            ("metallicRoughnessTexture", &mut self.metal),
-            ("normalTexture", &mut self.normal),
-            ("emissiveTexture", &mut self.emission),
-        ]
-    }
-}
-
-/// The pictures of a material.
-struct Pictures {
-    color: Option<Texture>,
-    /// The coverage in `color`, if there is any.
-    alpha: Option<Texture>,
-    metal: Option<Texture>,
-    normal: Option<NormalMap>,
-    emission: Option<Texture>,
-    transmission: Option<Texture>,
-}
-
-impl Pictures {
-    fn channel(&self, channel: usize) -> Option<Texture> {
-        self.metal.as_ref().map(|texture| Texture { channel, ..texture.clone() })
-    }
-
-    /// Those that glass and opaque materials have.
-    fn textures(&self) -> Textures {
-        Textures {
-            color: self.color.clone(),
-            roughness: self.channel(ROUGHNESS),
-            normal: self.normal.clone(),
-            ..Textures::default()
-        }
-    }
 }

@@ -3,22 +3,22 @@
 use std::collections::HashMap;
 
 use glam::{Vec2, Vec3};
-use gltf_json::{
-    Root,
-    accessor::Type,
-    mesh::{Primitive, Semantic},
-};
+use gltf_json::{Root, material::AlphaMode, validation::Checked};
 
 use super::{
     buffers::Buffers,
     fault::{Fault, Result, entry, place},
     pose::{Pose, PrimitivePose},
-    primitives::{Corners, attribute},
+    primitives::Corners,
+    variants,
 };
 use crate::Mesh;
 
 /// The most triangles of a file, over all its meshes.
 pub(super) const MOST_TRIANGLES: usize = 1 << 27;
+
+/// Vertex colours from which on are white.
+const WHITE: f32 = 0.999;
 
 /// The corner of a picture that shows where there are no texture coordinates.
 const UPPER_LEFT: Vec2 = Vec2::Y;
@@ -33,13 +33,15 @@ pub(super) struct SlottedMesh {
 pub(super) struct MeshReader<'a, 'b> {
     pub(super) root: &'a Root,
     pub(super) buffers: &'a Buffers<'b>,
+    /// The variant that chooses materials.
+    variant: Option<u64>,
     triangles_left: usize,
     pub(super) warnings: Vec<Fault>,
 }
 
 impl<'a, 'b> MeshReader<'a, 'b> {
-    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'b>) -> Self {
-        Self { root, buffers, triangles_left: MOST_TRIANGLES, warnings: Vec::new() }
+    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'b>, variant: Option<u64>) -> Self {
+        Self { root, buffers, variant, triangles_left: MOST_TRIANGLES, warnings: Vec::new() }
     }
 
     /// The mesh of an index, in a pose; none if it has no triangles. `uv_set_of` tells which texture coordinates a material takes,
@@ -56,7 +58,7 @@ impl<'a, 'b> MeshReader<'a, 'b> {
         let mut builder = Builder::default();
         for (number, primitive) in source.primitives.iter().enumerate() {
             let place = format!("{mesh_place}.primitives[{number}]");
-            let material = primitive.material.map(|material| material.value());
+            let material = variants::material(primitive, self.variant, &place)?;
             let uv_set = uv_set_of(material)?;
             let corners = Corners::read(self.root, self.buffers, primitive, uv_set, &place)?;
             let Some(corners) = corners else {
@@ -64,7 +66,7 @@ impl<'a, 'b> MeshReader<'a, 'b> {
                 continue;
             };
             self.take(corners.triangles.len(), &place)?;
-            self.warn_of(primitive, &corners, uv_set, &place)?;
+            self.warn_of(&corners, uv_set, material, &place);
             let pose = pose.of_primitive(self.root, self.buffers, primitive, corners.positions.count, &place)?;
             builder.add(corners, &pose, material, &place)?;
         }
@@ -87,48 +89,22 @@ impl<'a, 'b> MeshReader<'a, 'b> {
     }
 
     /// What of a primitive is not shown as it is meant.
-    fn warn_of(
-        &mut self,
-        primitive: &Primitive,
-        corners: &Corners<'_>,
-        uv_set: Option<u32>,
-        place: &str,
-    ) -> Result<()> {
+    fn warn_of(&mut self, corners: &Corners<'_>, uv_set: Option<u32>, material: Option<usize>, place: &str) {
         if let Some(set) = uv_set.filter(|_| corners.uvs.is_none()) {
             let problem = format!(
                 "has no TEXCOORD_{set}, which the pictures of its material need; their upper left corner shows"
             );
             self.warnings.push(Fault::new(place, problem));
         }
-        if has_colors(self.root, self.buffers, primitive, corners.positions.count, place)? {
-            let problem = "has vertex colours (COLOR_0), which are not supported; its material shows without them";
+        let material = material.and_then(|index| self.root.materials.get(index));
+        let is_opaque = material.is_none_or(|material| material.alpha_mode == Checked::Valid(AlphaMode::Opaque));
+        let is_clear = |vertex| corners.colors.as_ref().is_some_and(|colors| colors.at(vertex).w < 0.999);
+        if !is_opaque && (0..corners.positions.count).any(is_clear) {
+            let problem =
+                "has vertex colours with coverage (COLOR_0), which is not supported; it shows without holes of them";
             self.warnings.push(Fault::new(place, problem));
         }
-        Ok(())
     }
-}
-
-/// Whether a primitive has vertex colours other than white.
-fn has_colors(root: &Root, buffers: &Buffers<'_>, primitive: &Primitive, vertices: usize, place: &str) -> Result<bool> {
-    const WHITE: f32 = 0.999;
-    for (kind, channels) in [(Type::Vec3, 3), (Type::Vec4, 4)] {
-        let has_kind = |index: &gltf_json::Index<gltf_json::Accessor>| {
-            let accessor = root.accessors.get(index.value());
-            accessor.is_some_and(|a| matches!(a.type_, gltf_json::validation::Checked::Valid(found) if found == kind))
-        };
-        let key = gltf_json::validation::Checked::Valid(Semantic::Colors(0));
-        if !primitive.attributes.get(&key).is_some_and(has_kind) {
-            continue;
-        }
-        let Some(colors) = attribute(root, buffers, primitive, (Semantic::Colors(0), kind), vertices, place)? else {
-            continue;
-        };
-        return Ok((0..vertices).any(|vertex| match channels {
-            3 => colors.numbers::<3>(vertex).iter().any(|channel| *channel < WHITE),
-            _ => colors.numbers::<4>(vertex).iter().any(|channel| *channel < WHITE),
-        }));
-    }
-    Ok(false)
 }
 
 /// A mesh in the making. What all primitives so far lack takes no memory.
@@ -136,6 +112,7 @@ fn has_colors(root: &Root, buffers: &Buffers<'_>, primitive: &Primitive, vertice
 struct Builder {
     mesh: Mesh,
     slots: Vec<Option<usize>>,
+    slot_numbers: HashMap<Option<usize>, u32>,
     /// Corners of primitives that have no normals at all.
     corners_without: usize,
 }
@@ -174,7 +151,7 @@ impl Builder {
         used: &[u32],
         place: &str,
     ) -> Result<()> {
-        let Mesh { positions, normals, uvs, map_uvs, .. } = &mut self.mesh;
+        let Mesh { positions, normals, uvs, map_uvs, colors, .. } = &mut self.mesh;
         let before = positions.len();
         positions.reserve_exact(used.len());
         if corners.normals.is_some() || !normals.is_empty() {
@@ -182,6 +159,9 @@ impl Builder {
         }
         if corners.uvs.is_some() || corners.has_pictures || !uvs.is_empty() {
             uvs.resize(before + used.len(), UPPER_LEFT);
+        }
+        if corners.colors.is_some() || !colors.is_empty() {
+            colors.resize(before + used.len(), Vec3::ONE);
         }
         if corners.map_uvs.is_some() || !map_uvs.is_empty() {
             map_uvs.resize(before + used.len(), UPPER_LEFT);
@@ -197,6 +177,12 @@ impl Builder {
             positions.push(position);
             if let Some(stored) = normals.get_mut(number).filter(|_| normal.is_finite()) {
                 *stored = normal;
+            }
+            if let Some(given) = &corners.colors {
+                colors[number] = given.at(vertex).truncate();
+                if !colors[number].is_finite() {
+                    return Err(not_finite("vertex colour", colors[number], vertex, place));
+                }
             }
             for (given, stored) in [(&corners.uvs, &mut *uvs), (&corners.map_uvs, &mut *map_uvs)] {
                 let Some(given) = given else { continue };
@@ -226,11 +212,10 @@ impl Builder {
     }
 
     fn slot(&mut self, material: Option<usize>) -> u32 {
-        let known = self.slots.iter().position(|slot| *slot == material);
-        known.unwrap_or_else(|| {
+        *self.slot_numbers.entry(material).or_insert_with(|| {
             self.slots.push(material);
-            self.slots.len() - 1
-        }) as u32
+            self.slots.len() as u32 - 1
+        })
     }
 
     /// The mesh, if it has triangles, and how many corners have unusable normals.
@@ -239,7 +224,10 @@ impl Builder {
         if !self.mesh.normals.is_empty() {
             replaced = self.mesh.replace_unusable_normals().saturating_sub(self.corners_without);
         }
-        let Self { mesh, slots, .. } = self;
+        let Self { mut mesh, slots, .. } = self;
+        if mesh.colors.iter().all(|color| color.min_element() > WHITE) {
+            mesh.colors = Vec::new();
+        }
         ((!mesh.triangles.is_empty()).then_some(SlottedMesh { mesh, slots }), replaced)
     }
 }

@@ -1,4 +1,4 @@
-//! Morph targets and skins at rest: where vertices are before any animation.
+//! Morph targets and skins: where vertices are.
 
 use glam::{DAffine3, DMat4, Mat3, Mat4, Vec3};
 use gltf_json::{
@@ -24,12 +24,16 @@ pub(super) struct Pose {
 }
 
 impl Pose {
-    /// That of a node: its own weights or else its mesh's, and its skin.
+    /// That of a node: the weights of its animation, its own or else its mesh's, and its skin.
     pub(super) fn of_node(root: &Root, buffers: &Buffers<'_>, nodes: &Nodes, index: usize) -> Result<Self> {
         let node = &root.nodes[index];
         let mesh = node.mesh.and_then(|mesh| root.meshes.get(mesh.value()));
-        let weights =
-            node.weights.as_ref().or(mesh.and_then(|mesh| mesh.weights.as_ref())).cloned().unwrap_or_default();
+        let moved = nodes.motions.get(&index).and_then(|motion| motion.weights.as_ref());
+        let weights = moved
+            .or(node.weights.as_ref())
+            .or(mesh.and_then(|mesh| mesh.weights.as_ref()))
+            .cloned()
+            .unwrap_or_default();
         if weights.iter().any(|weight| !weight.is_finite()) {
             return Err(Fault::new(node_place(root, index), "has a weight of a morph target that is not finite"));
         }

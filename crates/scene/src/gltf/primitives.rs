@@ -1,5 +1,6 @@
 //! Triangles of a primitive: lists, strips and fans, indexed or not.
 
+use glam::{Vec3, Vec4};
 use gltf_json::{
     Root,
     accessor::Type,
@@ -20,10 +21,44 @@ pub(super) struct Corners<'a> {
     pub(super) uvs: Option<Accessor<'a>>,
     /// The second set of texture coordinates, which may serve as an energy map.
     pub(super) map_uvs: Option<Accessor<'a>>,
+    /// Factors on the material's colour, with coverage.
+    pub(super) colors: Option<Colors<'a>>,
     /// Whether pictures lie on the surface, which then must have texture coordinates, if only of one point.
     pub(super) has_pictures: bool,
     /// Vertices of each triangle, all of which are in range.
     pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// COLOR_0, of three or four channels.
+pub(super) enum Colors<'a> {
+    Opaque(Accessor<'a>),
+    WithAlpha(Accessor<'a>),
+}
+
+impl<'a> Colors<'a> {
+    fn read(
+        root: &Root,
+        buffers: &'a Buffers<'_>,
+        primitive: &Primitive,
+        vertices: usize,
+        place: &str,
+    ) -> Result<Option<Self>> {
+        let index = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0)));
+        let accessor = index.and_then(|index| root.accessors.get(index.value()));
+        let has_alpha = accessor.is_some_and(|accessor| accessor.type_ == Checked::Valid(Type::Vec4));
+        let kind = if has_alpha { Type::Vec4 } else { Type::Vec3 };
+        let read = attribute(root, buffers, primitive, (Semantic::Colors(0), kind), vertices, place)?;
+        Ok(read.map(if has_alpha { Self::WithAlpha } else { Self::Opaque }))
+    }
+
+    /// Colour and coverage of a vertex, held to 0 … 1 as the format asks.
+    pub(super) fn at(&self, vertex: usize) -> Vec4 {
+        let color = match self {
+            Self::Opaque(accessor) => Vec3::from(accessor.numbers(vertex)).extend(1.0),
+            Self::WithAlpha(accessor) => Vec4::from(accessor.numbers(vertex)),
+        };
+        color.clamp(Vec4::ZERO, Vec4::ONE)
+    }
 }
 
 /// The accessor of an attribute, which must have as many elements as there are vertices.
@@ -78,6 +113,7 @@ impl<'a> Corners<'a> {
             normals: find(Semantic::Normals, Type::Vec3, vertices)?,
             uvs: find(Semantic::TexCoords(uv_set.unwrap_or(0)), Type::Vec2, vertices)?,
             map_uvs: find(Semantic::TexCoords(1), Type::Vec2, vertices)?,
+            colors: Colors::read(root, buffers, primitive, vertices, place)?,
             has_pictures: uv_set.is_some(),
             positions,
             triangles: triangles(mode, count, index, place)?,

@@ -10,7 +10,7 @@ use super::{
     table::Table,
     textures::{DefaultChannel, Opacity, TextureReader},
 };
-use crate::{Error, METALS, Material, MaterialKind, Metal, Textures, metal};
+use crate::{Error, METALS, Material, MaterialKind, Metal, PLASTIC_REFLECTANCE, Textures, metal};
 
 /// Index of refraction of a coat or a thin wall that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -62,7 +62,9 @@ impl MaterialType {
             Self::Dielectric => (&["tint", "roughness", "normal"], &DIELECTRIC_KEYS),
             Self::ThinWalled => (&["tint", "normal", "opacity"], &["ior", "substance"]),
             Self::Coated => (&["albedo", "roughness", "emission", "normal", "opacity"], &["ior"]),
-            Self::MetallicRoughness => (&["base_color", "metallic", "roughness", "emission", "normal", "opacity"], &[]),
+            Self::MetallicRoughness => {
+                (&["base_color", "metallic", "roughness", "emission", "normal", "opacity"], &["reflectance"])
+            }
         }
     }
 
@@ -158,6 +160,7 @@ impl MaterialKeys<'_, '_, '_> {
             },
             MaterialType::MetallicRoughness => MaterialKind::MetallicRoughness {
                 base_color: self.color_or("base_color", Vec3::ONE)?,
+                reflectance: table.get("reflectance").map_or(Ok(PLASTIC_REFLECTANCE), |entry| entry.color())?,
                 metallic: self.metallic_or(1.0)?,
                 roughness: self.roughness_or(1.0)?,
             },

@@ -8,13 +8,16 @@ use std::{
 
 use glam::{Affine3A, DMat3, Vec3};
 
-use super::table::{Entry, Table};
+use super::{
+    shapes::{read_box, read_rectangle, read_sphere},
+    table::{Entry, Table},
+};
 use crate::{
-    Chart, Error, GltfFile, Material, Mesh, Object, ReadOptions, Warning, load_gltf, load_obj,
-    primitives::are_perpendicular,
+    Chart, Error, GltfFile, GltfOptions, Material, Mesh, MeshFile, MeshOptions, ObjFile, Object, ReadOptions, Warning,
+    load_gltf, load_obj, load_ply, load_stl,
 };
 
-const OBJECT_KEYS: [&str; 12] = [
+const OBJECT_KEYS: [&str; 16] = [
     "name",
     "mesh",
     "sphere",
@@ -26,12 +29,15 @@ const OBJECT_KEYS: [&str; 12] = [
     "rotate",
     "scale",
     "map_size",
+    "time",
+    "animation",
+    "variant",
+    "crease_angle",
     "map_uvs",
 ];
+/// Keys that go with glTF files alone.
+const GLTF_KEYS: [&str; 3] = ["time", "animation", "variant"];
 const SHAPE_KEYS: [&str; 4] = ["mesh", "sphere", "rectangle", "box"];
-
-/// Subdivisions of a sphere that names none: 16128 triangles.
-const SPHERE_SUBDIVISIONS: u32 = 6;
 
 /// Reads objects; holds what they share.
 pub(super) struct ObjectReader<'a> {
@@ -41,10 +47,12 @@ pub(super) struct ObjectReader<'a> {
     pub(super) materials: Vec<Material>,
     pub(super) warnings: Vec<Warning>,
     named_materials: HashMap<String, usize>,
-    meshes: HashMap<PathBuf, SharedMesh>,
-    gltf_files: HashMap<PathBuf, Arc<GltfFile>>,
-    /// Where the materials of glTF files stand in `materials`, of those that an object uses.
-    gltf_materials: HashMap<(PathBuf, usize), usize>,
+    /// Those read so far, with their crease angles.
+    meshes: Vec<(PathBuf, f32, SharedMesh)>,
+    /// Those read so far, with what of them.
+    gltf_files: Vec<(PathBuf, GltfOptions, Arc<GltfFile>)>,
+    /// Where the materials of glTF files, by their index in `gltf_files`, stand in `materials`, of those that an object uses.
+    gltf_materials: HashMap<(usize, usize), usize>,
     object_names: HashSet<String>,
     /// The last number given to each name that several objects have.
     name_numbers: HashMap<String, usize>,
@@ -80,8 +88,8 @@ impl<'a> ObjectReader<'a> {
             materials,
             warnings: Vec::new(),
             named_materials,
-            meshes: HashMap::new(),
-            gltf_files: HashMap::new(),
+            meshes: Vec::new(),
+            gltf_files: Vec::new(),
             gltf_materials: HashMap::new(),
             object_names: HashSet::new(),
             name_numbers: HashMap::new(),
@@ -112,7 +120,10 @@ impl<'a> ObjectReader<'a> {
         if shape.key() == "mesh" && has_ending(&self.mesh_path(&shape)?, &["gltf", "glb"]) {
             return self.read_gltf_objects(&table, &shape, name);
         }
-        let shape = self.read_shape(&shape)?;
+        if let Some(entry) = GLTF_KEYS.iter().find_map(|key| table.get(key)) {
+            return Err(entry.error("goes with a glTF file alone; leave it out"));
+        }
+        let shape = self.read_shape(&table, &shape)?;
         let materials = self.read_materials(&table, &shape)?;
         let mut objects = vec![Object {
             name: name.map_or_else(|| self.unused_name(&shape.default_name), str::to_owned),
@@ -136,18 +147,23 @@ impl<'a> ObjectReader<'a> {
         candidate
     }
 
-    fn read_shape(&mut self, shape: &Entry<'_>) -> Result<SharedMesh, Error> {
-        let inner = || shape.table(shape.place(), "a table: { key = value, ... }");
-        match shape.key() {
-            "sphere" => Ok(SharedMesh::primitive(read_sphere(&inner()?)?, "sphere")),
-            "rectangle" => Ok(SharedMesh::primitive(read_rectangle(&inner()?)?, "rectangle")),
-            "box" => Ok(SharedMesh::primitive(read_box(&inner()?)?, "box")),
-            _ => self.read_mesh_file(shape),
+    fn read_shape(&mut self, table: &Table<'_>, shape: &Entry<'_>) -> Result<SharedMesh, Error> {
+        if shape.key() == "mesh" {
+            return self.read_mesh_file(table, shape);
         }
+        if let Some(entry) = table.get("crease_angle") {
+            return Err(entry.error("goes with a mesh from an OBJ, PLY or STL file alone; leave it out"));
+        }
+        let inner = shape.table(shape.place(), "a table: { key = value, ... }")?;
+        Ok(match shape.key() {
+            "sphere" => SharedMesh::primitive(read_sphere(&inner)?, "sphere"),
+            "rectangle" => SharedMesh::primitive(read_rectangle(&inner)?, "rectangle"),
+            _ => SharedMesh::primitive(read_box(&inner)?, "box"),
+        })
     }
 
     fn mesh_path(&self, entry: &Entry<'_>) -> Result<PathBuf, Error> {
-        Ok(self.base_dir.join(entry.string("the path of an OBJ or glTF file, relative to the scene file")?))
+        Ok(self.base_dir.join(entry.string("the path of a mesh's file, relative to the scene file")?))
     }
 
     /// An object for each of a glTF file's.
@@ -158,7 +174,8 @@ impl<'a> ObjectReader<'a> {
         name: Option<&str>,
     ) -> Result<Vec<Object>, Error> {
         let path = self.mesh_path(entry)?;
-        let file = self.gltf_file(&path, entry)?;
+        let number = self.gltf_file(path, read_gltf_options(table, self.options)?, entry)?;
+        let file = Arc::clone(&self.gltf_files[number].2);
         let mut slots: Vec<_> =
             file.objects.iter().flat_map(|part| &part.mesh.material_slots).map(String::as_str).collect();
         slots.sort_unstable();
@@ -168,9 +185,8 @@ impl<'a> ObjectReader<'a> {
         let mut objects = Vec::new();
         for part in &file.objects {
             let slots = part.mesh.material_slots.iter().zip(&part.materials);
-            let materials = slots.map(|(slot, of_file)| {
-                choices[slot.as_str()].unwrap_or_else(|| self.gltf_material(&path, &file, *of_file))
-            });
+            let materials = slots
+                .map(|(slot, of_file)| choices[slot.as_str()].unwrap_or_else(|| self.gltf_material(number, *of_file)));
             objects.push(Object {
                 materials: materials.collect(),
                 name: match name {
@@ -219,40 +235,44 @@ impl<'a> ObjectReader<'a> {
         Ok(())
     }
 
-    fn gltf_file(&mut self, path: &Path, entry: &Entry<'_>) -> Result<Arc<GltfFile>, Error> {
-        if let Some(file) = self.gltf_files.get(path) {
-            return Ok(Arc::clone(file));
+    /// The number of a glTF file among those read, which it joins on its first use.
+    fn gltf_file(&mut self, path: PathBuf, options: GltfOptions, entry: &Entry<'_>) -> Result<usize, Error> {
+        let is_same = |(read, how, _): &(PathBuf, GltfOptions, _)| *read == path && *how == options;
+        if let Some(number) = self.gltf_files.iter().position(is_same) {
+            return Ok(number);
         }
-        let file = load_gltf(path, self.options).map_err(|cause| in_file(entry, cause))?;
+        let file = load_gltf(&path, &options).map_err(|cause| in_file(entry, cause))?;
         if file.objects.is_empty() {
             return Err(entry.error(format!("is {}, whose scene has no triangles", path.display())));
         }
         self.warnings.extend(file.warnings.iter().cloned());
-        let file = Arc::new(file);
-        self.gltf_files.insert(path.to_owned(), Arc::clone(&file));
-        Ok(file)
+        self.gltf_files.push((path, options, Arc::new(file)));
+        Ok(self.gltf_files.len() - 1)
     }
 
     /// The index of a glTF file's material, which joins the scene on its first use.
-    fn gltf_material(&mut self, path: &Path, file: &GltfFile, index: usize) -> usize {
-        *self.gltf_materials.entry((path.to_owned(), index)).or_insert_with(|| {
-            self.materials.push(file.materials[index].clone());
+    fn gltf_material(&mut self, file: usize, index: usize) -> usize {
+        *self.gltf_materials.entry((file, index)).or_insert_with(|| {
+            self.materials.push(self.gltf_files[file].2.materials[index].clone());
             self.materials.len() - 1
         })
     }
 
-    fn read_mesh_file(&mut self, entry: &Entry<'_>) -> Result<SharedMesh, Error> {
+    fn read_mesh_file(&mut self, table: &Table<'_>, entry: &Entry<'_>) -> Result<SharedMesh, Error> {
         let path = self.mesh_path(entry)?;
-        if let Some(mesh) = self.meshes.get(&path) {
+        let mut options = MeshOptions::from(self.options);
+        if let Some(angle) = table.get("crease_angle") {
+            options.crease_angle = angle.number()?;
+            if !(0.0..=180.0).contains(&options.crease_angle) {
+                let angle_stated = options.crease_angle;
+                return Err(angle.error(format!("is {angle_stated}; it must be from 0 to 180 (degrees)")));
+            }
+        }
+        let is_same = |(read, angle, _): &&(PathBuf, f32, SharedMesh)| *read == path && *angle == options.crease_angle;
+        if let Some((.., mesh)) = self.meshes.iter().find(is_same) {
             return Ok(mesh.clone());
         }
-        if !has_ending(&path, &["obj"]) {
-            return Err(entry.error(format!(
-                "is {}; meshes are read from OBJ and glTF files, whose names end in .obj, .gltf or .glb",
-                path.display()
-            )));
-        }
-        let file = load_obj(&path, self.options).map_err(|cause| in_file(entry, cause))?;
+        let file = load_mesh(&path, &options, entry)?;
         self.warnings.extend(file.warnings.iter().filter(|warning| !is_about_textures(warning)).cloned());
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let shared = SharedMesh {
@@ -261,7 +281,7 @@ impl<'a> ObjectReader<'a> {
             mtl: file.materials,
             warnings: file.warnings,
         };
-        self.meshes.insert(path, shared.clone());
+        self.meshes.push((path, options.crease_angle, shared.clone()));
         Ok(shared)
     }
 
@@ -310,7 +330,7 @@ impl<'a> ObjectReader<'a> {
             return Some(index);
         }
         let textures = shape.warnings.iter().filter(
-            |warning| matches!(warning, Warning::IgnoredTextures { material: name, .. } if *name == material.name),
+            |warning| matches!(warning, Warning::IgnoredTextures { material: name, .. } | Warning::UnreadPicture { material: name, .. } | Warning::OpenGlass { material: name, .. } if *name == material.name),
         );
         self.warnings.extend(textures.cloned());
         self.materials.push(material.clone());
@@ -333,6 +353,24 @@ fn has_ending(path: &Path, endings: &[&str]) -> bool {
     path.extension().is_some_and(|found| endings.iter().any(|ending| found.eq_ignore_ascii_case(ending)))
 }
 
+/// A mesh from a file of any kind but glTF.
+fn load_mesh(path: &Path, options: &MeshOptions, entry: &Entry<'_>) -> Result<ObjFile, Error> {
+    let without_materials = |MeshFile { mesh, warnings }| ObjFile { mesh, materials: Vec::new(), warnings };
+    let read = if has_ending(path, &["obj"]) {
+        load_obj(path, options)
+    } else if has_ending(path, &["ply"]) {
+        load_ply(path, options).map(without_materials)
+    } else if has_ending(path, &["stl"]) {
+        load_stl(path, options).map(without_materials)
+    } else {
+        return Err(entry.error(format!(
+            "is {}; meshes are read from OBJ, PLY, STL and glTF files, whose names end in .obj, .ply, .stl, .gltf or .glb",
+            path.display()
+        )));
+    };
+    read.map_err(|cause| in_file(entry, cause))
+}
+
 fn in_file(entry: &Entry<'_>, cause: Error) -> Error {
     Error::File { at: entry.location(), place: entry.place(), cause: Box::new(cause) }
 }
@@ -341,9 +379,20 @@ fn read_map_size(table: &Table<'_>) -> Result<Option<u32>, Error> {
     table.get("map_size").map(|entry| entry.whole32()).transpose()
 }
 
+/// When, by which animation and in which variant a glTF file is read.
+fn read_gltf_options(table: &Table<'_>, read: ReadOptions) -> Result<GltfOptions, Error> {
+    let text = |key, expected| table.get(key).map(|entry| entry.string(expected).map(str::to_owned)).transpose();
+    Ok(GltfOptions {
+        read,
+        time: table.get("time").map(|entry| entry.number()).transpose()?,
+        animation: text("animation", "the name of an animation, or its number from 0 in quotes")?,
+        variant: text("variant", "the name of a material variant")?,
+    })
+}
+
 /// Whether a warning matters only to objects that take their material from the MTL file.
 fn is_about_textures(warning: &Warning) -> bool {
-    matches!(warning, Warning::IgnoredTextures { .. })
+    matches!(warning, Warning::IgnoredTextures { .. } | Warning::UnreadPicture { .. } | Warning::OpenGlass { .. })
 }
 
 fn no_material(table: &Table<'_>, shape: &SharedMesh, slot: usize) -> Error {
@@ -377,46 +426,4 @@ fn read_placement(table: &Table<'_>) -> Result<Affine3A, Error> {
     let rotation = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
     let linear = rotation * DMat3::from_diagonal(scale.as_dvec3());
     Ok(Affine3A::from_mat3_translation(linear.as_mat3(), vector("translate")?))
-}
-
-fn read_sphere(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["center", "radius", "subdivisions"])?;
-    let center = table.require("center", "3 numbers [x, y, z], metres")?.vector()?;
-    let radius_entry = table.require("radius", "a number, metres")?;
-    let radius = radius_entry.number()?;
-    if radius <= 0.0 {
-        return Err(radius_entry.error(format!("is {radius}; it must be greater than 0 (metres)")));
-    }
-    let mut subdivisions = SPHERE_SUBDIVISIONS;
-    if let Some(entry) = table.get("subdivisions") {
-        subdivisions = entry.whole32()?;
-        let most = Mesh::MAX_SPHERE_SUBDIVISIONS;
-        if !(1..=most).contains(&subdivisions) {
-            return Err(entry.error(format!("is {subdivisions}; it must be from 1 to {most}")));
-        }
-    }
-    Ok(Mesh::sphere(center, radius, subdivisions))
-}
-
-fn read_rectangle(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["center", "edge_u", "edge_v"])?;
-    let vector = |key| table.require(key, "3 numbers [x, y, z], metres")?.vector();
-    let (center, edge_u, edge_v) = (vector("center")?, vector("edge_u")?, vector("edge_v")?);
-    if edge_u.length() == 0.0 || edge_v.length() == 0.0 {
-        return Err(table.error("edge_u and edge_v must not have length 0"));
-    }
-    if !are_perpendicular(edge_u, edge_v) {
-        return Err(table.error("edge_u and edge_v must be perpendicular; for another shape, use an OBJ mesh"));
-    }
-    Ok(Mesh::rectangle(center, edge_u, edge_v))
-}
-
-fn read_box(table: &Table<'_>) -> Result<Mesh, Error> {
-    table.allow_only(&["min", "max"])?;
-    let vector = |key| table.require(key, "3 numbers [x, y, z], metres")?.vector();
-    let (min, max) = (vector("min")?, vector("max")?);
-    if !min.cmplt(max).all() {
-        return Err(table.error(format!("min {min} must be less than max {max} along each axis")));
-    }
-    Ok(Mesh::cuboid(min, max))
 }

@@ -68,6 +68,11 @@ pub(super) struct Table<'d> {
 }
 
 impl<'d> Table<'d> {
+    /// The name that messages give the table.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Where the table begins.
     pub(super) fn location(&self) -> Location {
         self.document.location(self.start)
@@ -156,6 +161,11 @@ impl<'d> Entry<'d> {
     /// The key.
     pub(super) fn key(&self) -> &str {
         &self.key
+    }
+
+    /// The value as TOML has it.
+    pub(super) fn value(&self) -> &'d DeValue<'d> {
+        self.value.get_ref()
     }
 
     /// Where the value stands.

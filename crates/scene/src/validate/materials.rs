@@ -66,8 +66,9 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             at.number("ior", ior, 1.0.., "1 or greater and finite")?;
             check_roughness(roughness)
         }
-        MaterialKind::MetallicRoughness { base_color, metallic, roughness } => {
+        MaterialKind::MetallicRoughness { base_color, reflectance, metallic, roughness } => {
             check_share("base_color", base_color)?;
+            at.channels("reflectance", reflectance, 0.0..=0.9, "from 0 to 0.9")?;
             at.number("metallic", metallic, 0.0..=1.0, "from 0 to 1")?;
             check_roughness(roughness)
         }

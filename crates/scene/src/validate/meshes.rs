@@ -25,6 +25,7 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
         ("normals", mesh.normals.len()),
         ("texture coordinates", mesh.uvs.len()),
         ("texture coordinates for its map", mesh.map_uvs.len()),
+        ("colours", mesh.colors.len()),
     ];
     for (what, count) in counts {
         ensure(count == 0 || count == vertices, &|| format!("has {count} {what}; it must have {vertices} or none"))?;
@@ -33,6 +34,10 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
     ensure(mesh.normals.iter().all(is_unit), &|| "has a normal whose length is not 1".to_owned())?;
     let has_finite_uvs = mesh.uvs.iter().chain(&mesh.map_uvs).all(|uv| uv.is_finite());
     ensure(has_finite_uvs, &|| "has a texture coordinate that is not finite".to_owned())?;
+    let is_share = |color: &Vec3| color.to_array().iter().all(|channel| (0.0..=1.0).contains(channel));
+    if let Some(color) = mesh.colors.iter().find(|color| !is_share(color)) {
+        return Err(format!("has the vertex colour {color}; each channel must be from 0 to 1"));
+    }
     if let Chart::Natural(places) = &mesh.chart {
         let are_sound = places.len() == vertices && places.iter().all(|place| place.is_finite());
         ensure(are_sound, &|| {

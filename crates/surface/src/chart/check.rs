@@ -131,7 +131,7 @@ impl FlatChart {
             let touches = |other: usize| touch([a, b], ends(border[other]), self.tolerance);
             let beside = 0.5 * (a + b) + (b - a).perp().normalize_or_zero() * 4.0 * self.tolerance;
             let covers = |other: usize| other != k && reaches(&self.flat.corners[other], beside, self.tolerance);
-            let may_overlap = outline.any_near(number, touches) || self.flat.any_in(beside, beside, covers);
+            let may_overlap = outline.any_near(number, touches) || self.flat.any_in((beside, beside), covers);
             may_overlap && (self.boxes > MANY_BOXES || self.flat.any_near(k, |other| self.overlap(k, other)))
         })
     }

@@ -1,55 +1,93 @@
 //! Overlap of triangles in a plane.
 
-use std::time::Duration;
-
 use glam::DVec2;
-use obvhs::{
-    BvhBuildParams,
-    aabb::Aabb,
-    bvh2::{Bvh2, builder::build_bvh2_from_tris},
-    triangle::Triangle,
-};
+use rayon::prelude::*;
+
+/// Nodes of a level, or triangles, in a node of the next.
+const CHILDREN: usize = 8;
 
 /// Triangles of a plane, found by place.
+///
+/// A tree of boxes over the triangles along a Z-order curve, which takes the same time to build for slivers, fans and heaps as for others.
 pub(super) struct FlatTriangles {
     pub corners: Vec<[DVec2; 3]>,
-    bvh: Bvh2,
+    /// The triangles' numbers along the curve.
+    order: Vec<u32>,
+    /// The boxes of the triangles along the curve, then of each [`CHILDREN`] of these, and so on.
+    levels: Vec<Vec<Box2>>,
 }
+
+/// Lower and upper corner.
+type Box2 = (DVec2, DVec2);
 
 impl FlatTriangles {
     pub(super) fn new(corners: Vec<[DVec2; 3]>) -> Self {
-        let flat = |[a, b, c]: &[DVec2; 3]| Triangle {
-            v0: a.as_vec2().extend(0.0).into(),
-            v1: b.as_vec2().extend(0.0).into(),
-            v2: c.as_vec2().extend(0.0).into(),
-        };
-        let triangles: Vec<_> = corners.iter().map(flat).collect();
-        let bvh = if triangles.is_empty() {
-            Bvh2::default()
-        } else {
-            build_bvh2_from_tris(&triangles, BvhBuildParams::very_fast_build(), &mut Duration::default())
-        };
-        Self { corners, bvh }
+        let (low, high) = union(&corners.iter().map(bounds).collect::<Vec<_>>());
+        let scale = f64::from(u32::MAX) / (high - low).max_element().max(f64::MIN_POSITIVE);
+        let place = |[a, b, c]: &[DVec2; 3]| z_order(((*a + *b + *c) / 3.0 - low) * scale);
+        let mut keyed: Vec<(u64, u32)> = corners.par_iter().map(place).zip(0..corners.len() as u32).collect();
+        keyed.par_sort_unstable();
+        let order: Vec<u32> = keyed.into_iter().map(|(_, number)| number).collect();
+        let mut level: Vec<Box2> = order.iter().map(|&number| bounds(&corners[number as usize])).collect();
+        let mut levels = Vec::new();
+        while level.len() > 1 {
+            let above = level.chunks(CHILDREN).map(union).collect();
+            levels.push(std::mem::replace(&mut level, above));
+        }
+        levels.push(level);
+        Self { corners, order, levels }
     }
 
     /// Whether `found` holds for some triangle whose box meets that of a given one, other than itself.
     pub(super) fn any_near(&self, triangle: usize, mut found: impl FnMut(usize) -> bool) -> bool {
-        let [a, b, c] = self.corners[triangle];
-        self.any_in(a.min(b).min(c), a.max(b).max(c), |other| other != triangle && found(other))
+        self.any_in(bounds(&self.corners[triangle]), |other| other != triangle && found(other))
     }
 
     /// Whether `found` holds for some triangle whose box meets a given one.
-    pub(super) fn any_in(&self, low: DVec2, high: DVec2, mut found: impl FnMut(usize) -> bool) -> bool {
-        let corner = |p: DVec2| p.as_vec2().extend(0.0).into();
-        let mut any = false;
-        self.bvh.aabb_traverse(Aabb::new(corner(low), corner(high)), |bvh, node| {
-            let node = &bvh.nodes[node as usize];
-            let slots = node.first_index..node.first_index + node.prim_count;
-            any = slots.map(|slot| bvh.primitive_indices[slot as usize] as usize).any(&mut found);
-            !any
-        });
-        any
+    pub(super) fn any_in(&self, (low, high): Box2, mut found: impl FnMut(usize) -> bool) -> bool {
+        let top = self.levels.len() - 1;
+        let mut open: Vec<(usize, usize)> = (0..self.levels[top].len()).map(|node| (top, node)).collect();
+        while let Some((level, node)) = open.pop() {
+            let (own_low, own_high) = self.levels[level][node];
+            if own_low.cmpgt(high).any() || own_high.cmplt(low).any() {
+                continue;
+            }
+            if level > 0 {
+                let children = CHILDREN * node..(CHILDREN * (node + 1)).min(self.levels[level - 1].len());
+                open.extend(children.map(|child| (level - 1, child)));
+            } else if found(self.order[node] as usize) {
+                return true;
+            }
+        }
+        false
     }
+}
+
+fn bounds([a, b, c]: &[DVec2; 3]) -> Box2 {
+    (a.min(*b).min(*c), a.max(*b).max(*c))
+}
+
+fn union(boxes: &[Box2]) -> Box2 {
+    let around = |(low, high): Box2, own: &Box2| (low.min(own.0), high.max(own.1));
+    boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), around)
+}
+
+/// The place along a Z-order curve of a point with coordinates from 0 to 2³².
+fn z_order(point: DVec2) -> u64 {
+    let spread = |x: u32| {
+        let mut x = u64::from(x);
+        for (shift, mask) in [
+            (16, 0x0000_ffff_0000_ffff),
+            (8, 0x00ff_00ff_00ff_00ff),
+            (4, 0x0f0f_0f0f_0f0f_0f0f),
+            (2, 0x3333_3333_3333_3333),
+            (1, 0x5555_5555_5555_5555),
+        ] {
+            x = (x | x << shift) & mask;
+        }
+        x
+    };
+    spread(point.x as u32) | spread(point.y as u32) << 1
 }
 
 /// How deep two triangles lie in each other: the least shift that parts them; 0 or less where they do not overlap.

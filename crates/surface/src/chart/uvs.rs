@@ -124,7 +124,7 @@ mod tests {
         checked(Mesh::sphere(Vec3::ZERO, 1.0, 6)).unwrap();
         // Mirrored triangles cover no place twice either.
         let mut mirrored = grid(7);
-        mirrored.uvs.iter_mut().for_each(|uv| uv.x = -3.0 * uv.x);
+        mirrored.uvs.iter_mut().for_each(|uv| uv.x *= -3.0);
         checked(mirrored).unwrap();
     }
 

@@ -3,7 +3,7 @@
 
 use std::{f64::consts::TAU, path::Path, sync::Arc};
 
-use diacaustic_scene::{Mesh, Object, ReadOptions, load_obj};
+use diacaustic_scene::{Mesh, MeshOptions, Object, load_obj};
 use glam::{Affine3A, DVec2, DVec3, Vec3};
 
 /// An object of a mesh, where the mesh is.
@@ -73,7 +73,7 @@ pub fn l_room() -> Mesh {
 pub fn teapot() -> Mesh {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|folder| folder.join("assets/meshes").exists());
     let path = path.expect("the repository").join("assets/meshes/teapot.obj");
-    load_obj(&path, ReadOptions::default()).unwrap_or_else(|error| panic!("{error}")).mesh
+    load_obj(&path, &MeshOptions::default()).unwrap_or_else(|error| panic!("{error}")).mesh
 }
 
 /// A sphere of radius 1 m as a scanner might see it: waves of all lengths and noise of a share of the triangles' width.

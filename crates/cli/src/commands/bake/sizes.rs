@@ -9,10 +9,8 @@ use super::BakeArguments;
 
 /// Texels along the longer side of a map where nobody states them.
 const DEFAULT_SIZE: u32 = 512;
-/// The size of a map by which its texels are measured.
-const MEASURED_SIZE: u32 = 256;
 /// The sizes that scenes may state.
-const SIZES: std::ops::RangeInclusive<f32> = 2.0..=8192.0;
+const SIZES: std::ops::RangeInclusive<u32> = 2..=8192;
 
 /// States the size of every receiver's map: that of the arguments, else the scene's, else the default.
 pub(super) fn state_sizes(scene: &mut Scene, arguments: &BakeArguments) {
@@ -31,17 +29,8 @@ pub(super) fn state_sizes(scene: &mut Scene, arguments: &BakeArguments) {
 
 /// The size of a map that has so many texels a metre, on average over the object's surface.
 fn size_of_density(object: &Object, texels_per_metre: f32) -> u32 {
-    let layout = MapLayout::new(object, MEASURED_SIZE);
-    let (mut texels, mut area) = (0.0, 0.0);
-    for (triangle, [a, b, c]) in layout.corners.iter().enumerate() {
-        let [p, q, r] = object.mesh.corners(triangle).map(|corner| object.world_from_object.transform_point3(corner));
-        texels += (*b - *a).perp_dot(*c - *a).abs();
-        area += (q - p).cross(r - p).length();
-    }
-    let measured = (texels / area.max(f32::MIN_POSITIVE)).sqrt();
-    let longer_side = layout.width.max(layout.height) - 1;
-    let size = longer_side as f32 * texels_per_metre / measured.max(f32::MIN_POSITIVE) + 1.0;
-    size.round().clamp(*SIZES.start(), *SIZES.end()) as u32
+    let layout = MapLayout::with_texel_width(object, 1.0 / texels_per_metre);
+    layout.width.max(layout.height).clamp(*SIZES.start(), *SIZES.end())
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! The arguments of `render`.
 
-use std::{path::PathBuf, time::Duration};
+use std::{ops::RangeInclusive, path::PathBuf, time::Duration};
 
 use crate::{
-    numbers::{parse_photons, parse_samples, parse_seconds, parse_target_error},
+    numbers::{parse_frames, parse_photons, parse_samples, parse_seconds, parse_target_error},
     session::SessionArguments,
 };
 
@@ -45,6 +45,27 @@ pub struct RenderArguments {
     #[arg(long, value_name = "ERROR", value_parser = parse_target_error)]
     pub target_error: Option<f32>,
 
+    /// Render frames A to B, both included, of the scene's animation into numbered files: NAME.0001.png
+    ///
+    /// Every file that is written has the frame's number before its ending. A frame is the same whether it is rendered alone or with others;
+    /// --time-limit is that of each.
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, conflicts_with_all = ["checkpoint", "resume"])]
+    pub frames: Option<RangeInclusive<u32>>,
+
+    /// Keep in this file how far the render is, to go on from with --resume after a crash or another interruption
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<PathBuf>,
+
+    /// Time between two checkpoints, such as 30s, 5min or 1h; there is one at the end as well
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, default_value = "30s", requires = "checkpoint")]
+    pub every: Duration,
+
+    /// Go on from a checkpoint of the same scene, seed, version and GPU, to the same picture as a render that never stopped
+    ///
+    /// More samples than before may be asked for. --checkpoint may name the same file.
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
+
     /// Stop adding photons and samples after this time and write what there is
     ///
     /// Counted from the start of the program. Photons take at most half of what is left when they begin. There is always one batch
@@ -60,7 +81,7 @@ pub(super) mod tests {
     use clap::{Args as _, FromArgMatches as _};
 
     use super::*;
-    use crate::scene_arguments::SceneArguments;
+    use crate::{device::DeviceArguments, scene_arguments::SceneArguments};
 
     /// The arguments of a line, without the program's name.
     pub(crate) fn parse(line: impl IntoIterator<Item = impl Into<OsString>>) -> Result<RenderArguments, clap::Error> {
@@ -73,7 +94,8 @@ pub(super) mod tests {
     fn all_flags_are_read() {
         let read = parse(
             "a.toml --set render.width=8 --output a.exr --output a.png --stats s.json --energy-maps maps \
-             --photons 1_000_000 --samples 8 --target-error 0.02 --seed 7 --time-limit 2.5 --floor --allow-outside --quiet"
+             --photons 1_000_000 --samples 8 --target-error 0.02 --seed 7 --time-limit 2.5 --floor --time -1.5 --animation walk --variant red --allow-outside --quiet \
+             --adapter llvm --device-memory 1GiB --checkpoint c --every 1min --resume r"
                 .split_whitespace(),
         );
         let expected = RenderArguments {
@@ -83,8 +105,12 @@ pub(super) mod tests {
                     overrides: vec!["render.width=8".parse().unwrap()],
                     seed: Some(7),
                     floor: true,
+                    time: Some(-1.5),
+                    animation: Some("walk".into()),
+                    variant: Some("red".into()),
                     allow_outside: true,
                 },
+                device: DeviceArguments { adapter: Some("llvm".parse().unwrap()), device_memory: Some(1 << 30) },
                 quiet: true,
             },
             outputs: vec!["a.exr".into(), "a.png".into()],
@@ -93,10 +119,17 @@ pub(super) mod tests {
             photons: Some(1_000_000),
             samples: Some(8),
             target_error: Some(0.02),
+            frames: None,
+            checkpoint: Some("c".into()),
+            every: Duration::from_secs(60),
+            resume: Some("r".into()),
             time_limit: Some(Duration::from_millis(2500)),
         };
         assert_eq!(read.unwrap(), expected);
         let bare = parse(["a.toml"]).unwrap();
         assert_eq!((bare.outputs.len(), bare.photons, bare.time_limit, bare.session.quiet), (0, None, None, false));
+        assert!(parse(["a.toml", "--every", "1s"]).is_err(), "without a checkpoint");
+        assert_eq!(parse(["a.toml", "--frames", "3..5"]).unwrap().frames, Some(3..=5));
+        assert!(parse(["a.toml", "--frames", "3..5", "--checkpoint", "c"]).is_err());
     }
 }

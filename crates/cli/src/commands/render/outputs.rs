@@ -2,6 +2,7 @@
 
 use std::{
     collections::HashSet,
+    ffi::OsString,
     path::{Path, PathBuf, absolute},
 };
 
@@ -20,31 +21,42 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    /// The files that the arguments, else the scene, else the scene file's name choose.
+    /// The files that the arguments, else the scene, else the scene file's name choose; of a frame, with its number in them.
     ///
     /// Creates the energy maps' folder if it is missing.
     ///
     /// # Errors
     /// If a picture's ending stands for no format, a file is named twice, or one cannot be written.
-    pub fn choose(arguments: &RenderArguments, of_scene: &[PathBuf]) -> Result<Self, Error> {
+    pub fn choose(arguments: &RenderArguments, of_scene: &[PathBuf], frame: Option<u32>) -> Result<Self, Error> {
         let pictures = match (arguments.outputs.as_slice(), of_scene) {
             ([], []) => vec![default_picture(&arguments.session.scene.scene)],
             ([], files) => files.to_vec(),
             (files, _) => files.to_vec(),
         };
+        let pictures: Vec<_> = pictures.into_iter().map(|path| numbered(path, frame)).collect();
+        let statistics = arguments.stats.clone().map(|path| numbered(path, frame));
         let mut named = HashSet::from([comparable(&arguments.session.scene.scene)]);
         for path in &pictures {
             Format::of(path)?;
         }
-        for path in pictures.iter().chain(&arguments.stats) {
+        for path in pictures.iter().chain(&statistics).chain(&arguments.checkpoint) {
             if !named.insert(comparable(path)) {
                 return Err(Error::NamedTwice(path.clone()));
             }
             check_writable(path)?;
         }
         let energy_maps = arguments.energy_maps.as_deref().map(EnergyMapFolder::open).transpose()?;
-        Ok(Self { pictures, statistics: arguments.stats.clone(), energy_maps })
+        Ok(Self { pictures, statistics, energy_maps })
     }
+}
+
+/// A name with the frame's number before its ending.
+fn numbered(path: PathBuf, frame: Option<u32>) -> PathBuf {
+    let Some(frame) = frame else { return path };
+    let ending = path.extension().unwrap_or_default().to_owned();
+    let mut number = OsString::from(format!("{frame:04}."));
+    number.push(ending);
+    path.with_extension(number)
 }
 
 fn default_picture(scene: &Path) -> PathBuf {
@@ -71,7 +83,7 @@ mod tests {
         };
         let line = [scene].into_iter().chain(flags.iter().map(in_folder));
         let of_scene: Vec<_> = of_scene.iter().map(|file| folder.join(file)).collect();
-        Outputs::choose(&parse(line).unwrap(), &of_scene)
+        Outputs::choose(&parse(line).unwrap(), &of_scene, None)
     }
 
     #[test]
@@ -99,11 +111,20 @@ mod tests {
             (&["--output", "a.png", "--output", "a.png"], 2),
             (&["--output", "a.png", "--stats", "a.png"], 2),
             (&["--stats", "a scene.toml"], 2),
+            (&["--checkpoint", "a scene.toml"], 2),
+            (&["--checkpoint", "missing/a.state"], 1),
         ] {
             let error = choose(folder.path(), flags, &[]).unwrap_err();
             assert_eq!(error.exit_status(), status, "{flags:?}: {error}");
         }
         assert_eq!(choose(folder.path(), &[], &["a.bmp"]).unwrap_err().exit_status(), 2);
+    }
+
+    #[test]
+    fn frames_have_their_number_before_the_ending() {
+        let numbers = [("a/b.png", Some(7)), ("b.c.exr", Some(12345)), ("b.png", None)];
+        let names = numbers.map(|(path, frame)| numbered(path.into(), frame));
+        assert_eq!(names, ["a/b.0007.png", "b.c.12345.exr", "b.png"].map(PathBuf::from));
     }
 
     #[test]

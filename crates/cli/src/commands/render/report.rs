@@ -14,6 +14,7 @@ pub(crate) struct Report<'r> {
     pub counted: &'r Statistics,
     pub times: Times,
     pub time_limit_reached: bool,
+    pub interrupted: bool,
     pub error: Option<f64>,
 }
 
@@ -25,6 +26,7 @@ impl Report<'_> {
             scene: self.scene_file.clone(),
             seed: self.scene.settings.seed,
             time_limit_reached: self.time_limit_reached,
+            interrupted: self.interrupted,
             adapter: adapter(self.adapter),
             size: self.size(),
             seconds: self.seconds(),
