@@ -5,12 +5,13 @@ use glam::{Vec2, Vec3};
 
 use crate::material_records::{mean_reflectance, reflectance, under_coat};
 
-/// The share of light from everywhere that a material's base sends out along its normal, at texture coordinates `uv`: a receiver whose
+/// The share of light from everywhere that a material's base sends out along its normal, at texture coordinates `uv` and where the mesh's vertices
+/// have the colour `vertex_color`, 1 without: a receiver whose
 /// lightmap holds E shows about this share of E/π. It is exact for matt surfaces; a gloss over the base takes a share that depends on
 /// directions, which a lightmap does not know, and shows nothing of its own. 0 for what is no receiver.
-pub fn base_reflectance(material: &Material, uv: Vec2) -> Vec3 {
+pub fn base_reflectance(material: &Material, uv: Vec2, vertex_color: Vec3) -> Vec3 {
     let textures = &material.textures;
-    let picture = textures.color.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
+    let picture = vertex_color * textures.color.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
     match material.kind {
         MaterialKind::Diffuse { albedo } => albedo * picture,
         MaterialKind::Phong { diffuse, .. } => diffuse * picture,
@@ -38,9 +39,11 @@ mod tests {
 
     #[test]
     fn a_coat_takes_its_share_twice() {
-        let color = |kind| base_reflectance(&Material::new("it", kind), Vec2::ZERO);
+        let color = |kind| base_reflectance(&Material::new("it", kind), Vec2::ZERO, Vec3::ONE);
         let albedo = Vec3::new(0.0, 0.8, 1.0);
         assert_eq!(color(MaterialKind::Diffuse { albedo }), albedo);
+        let painted = Material::new("it", MaterialKind::Diffuse { albedo });
+        assert_eq!(base_reflectance(&painted, Vec2::ZERO, Vec3::new(1.0, 0.5, 0.0)), Vec3::new(0.0, 0.4, 0.0));
         let coated = color(MaterialKind::Coated { albedo, ior: 1.5, roughness: 0.0 });
         // 1 − 0.0918 goes in (Walsh 1926), 0.96 of what meets the coat along the normal comes out, spread by 1.5².
         let (inside, passes) = (1.0 - (1.0 - 0.0918) / 2.25, 0.96 * (1.0 - 0.0918) / 2.25);

@@ -51,7 +51,7 @@ impl<'s> Colors<'s> {
         let material = &self.scene.materials[object.material_of(triangle)];
         let uv = uv_at(object, place);
         let mut radiance =
-            base_reflectance(material, uv) * irradiance / PI + ambient(material, uv) * self.scene.ambient;
+            base_reflectance(material, uv, vertex_color(object, place)) * irradiance / PI + ambient(material, uv) * self.scene.ambient;
         if !is_back {
             let picture = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
             radiance += material.emission * picture;
@@ -66,6 +66,15 @@ fn uv_at(object: &Object, place: SurfacePlace) -> Vec2 {
     }
     let corners = object.mesh.triangles[place.triangle as usize];
     (0..3).map(|corner| place.weights[corner] * object.mesh.uvs[corners[corner] as usize]).sum()
+}
+
+/// The colour of the vertices at a place; 1 for a mesh without.
+fn vertex_color(object: &Object, place: SurfacePlace) -> Vec3 {
+    if object.mesh.colors.is_empty() {
+        return Vec3::ONE;
+    }
+    let corners = object.mesh.triangles[place.triangle as usize];
+    (0..3).map(|corner| place.weights[corner] * object.mesh.colors[corners[corner] as usize]).sum()
 }
 
 /// The share of ambient light that a material sends on.
