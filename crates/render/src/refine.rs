@@ -177,10 +177,10 @@ impl Course {
 
     fn next_samples(&self) -> Step {
         if let Some(samples) = self.samples {
-            return Step::Sample((samples - self.sampled).min(PICTURES_AT_ONCE as u32));
+            return Step::Sample((samples - self.sampled).min(self.samples_at_once()));
         }
         if self.sampled < FIRST_SAMPLES {
-            return Step::Sample(PICTURES_AT_ONCE as u32);
+            return Step::Sample(self.samples_at_once());
         }
         let Some(fewest) = self.listed.iter().map(|&(_, missing)| missing).min() else { return Step::Estimate };
         let fitting = (PICTURES_AT_ONCE * self.tile_count / self.listed.len()) as u32;
@@ -188,6 +188,11 @@ impl Course {
             tiles: self.listed.iter().map(|&(tile, _)| tile).collect(),
             count: fewest.min(fitting.max(1)),
         }
+    }
+
+    /// Samples of every pixel in a step: one at first, for there to be a picture soon.
+    fn samples_at_once(&self) -> u32 {
+        if self.sampled < PICTURES_AT_ONCE as u32 { 1 } else { PICTURES_AT_ONCE as u32 }
     }
 
     /// Notes photons emitted.
@@ -361,7 +366,7 @@ mod tests {
         let refinement = course.refinement(0.0);
         assert!((4..12).contains(&looks) && refinement.photons.is_multiple_of(3), "{looks} looks, {refinement:?}");
         assert!(course.map_error <= 0.5 * 0.01);
-        assert_eq!(course.next_step(), Step::Sample(2));
+        assert_eq!(course.next_step(), Step::Sample(1));
     }
 
     #[test]

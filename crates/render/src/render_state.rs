@@ -91,8 +91,9 @@ impl RenderState {
             _ => Error::BadState(format!("it cannot be read: {error}")),
         };
         let first = line(&mut from).map_err(cut_off)?;
-        let checksum = first.trim_end().strip_prefix(MAGIC).map(str::trim_start);
-        let Some(checksum) = checksum.and_then(|digits| u64::from_str_radix(digits, 16).ok()) else {
+        let digits = first.strip_prefix(MAGIC).and_then(|rest| rest.strip_prefix(' '));
+        let digits = digits.and_then(|rest| rest.strip_suffix('\n')).filter(|digits| digits.len() == 16);
+        let Some(checksum) = digits.and_then(|digits| u64::from_str_radix(digits, 16).ok()) else {
             return Err(bad("it is no render state that this version reads"));
         };
         let text = line(&mut from).map_err(cut_off)?;

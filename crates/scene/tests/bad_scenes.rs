@@ -117,12 +117,12 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "ambient = 0.1",
         "ambiance = 0.1",
-        r#"x.toml:2:1: the scene file: unknown key "ambiance"; did you mean "ambient"? Known keys: background, ambient, animation, camera, render, output, materials, lights, objects"#,
+        r#"x.toml:2:1: the scene file: unknown key "ambiance"; did you mean "ambient"? Known keys: background, ambient, animation, camera, render, output, paper, materials, lights, objects"#,
     ),
     (
         "[render]",
         "[rendering]",
-        r#"x.toml:10:2: the scene file: unknown key "rendering"; did you mean "render"? Known keys: background, ambient, animation, camera, render, output, materials, lights, objects"#,
+        r#"x.toml:10:2: the scene file: unknown key "rendering"; did you mean "render"? Known keys: background, ambient, animation, camera, render, output, paper, materials, lights, objects"#,
     ),
     (
         "ambient = 0.1",

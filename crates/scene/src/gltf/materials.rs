@@ -109,7 +109,8 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let is_volume = is_closed && self.is_volume(Some(index));
         let others = source.extensions.as_ref().map(|extensions| &extensions.others);
         let ior = source.extensions.as_ref().and_then(|extensions| extensions.ior.as_ref()).map(|ior| ior.ior.0);
-        let layers = Layers::of(others, ior, &place)?;
+        let is_unlit = source.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
+        let layers = Layers { is_unlit, ..Layers::of(others, ior, &place)? };
         self.warn_of_layers(&layers, glass.is_some(), &place);
         let Some(glass) = glass else { return Ok(self.opaque(name, &numbers, &layers, pictures, &place)) };
         if !is_volume && self.is_volume(Some(index)) {

@@ -11,7 +11,6 @@ use crate::PLASTIC_REFLECTANCE;
 
 pub(super) const CLEARCOAT: &str = "KHR_materials_clearcoat";
 const SPECULAR: &str = "KHR_materials_specular";
-const UNLIT: &str = "KHR_materials_unlit";
 
 /// The greatest reflectance along the normal of what is no metal.
 const MOST_REFLECTANCE: f32 = 0.9;
@@ -31,7 +30,7 @@ pub(super) struct Layers {
 }
 
 impl Layers {
-    /// Those of a material with these extensions and, of KHR_materials_ior, this index of refraction.
+    /// Those of a material with these extensions and, of KHR_materials_ior, this index of refraction; KHR_materials_unlit is not among them.
     pub(super) fn of(extensions: Option<&Map<String, Value>>, ior: Option<f32>, place: &str) -> Result<Self> {
         let find = |name: &str| extensions.and_then(|extensions| extensions.get(name));
         let specular = find(SPECULAR);
@@ -52,7 +51,7 @@ impl Layers {
             has_specular: factor != 1.0 || color != Vec3::ONE,
             has_specular_pictures: has("specularTexture") || has("specularColorTexture"),
             coat: coat.transpose()?.filter(|[strength, _]| *strength > 0.0),
-            is_unlit: find(UNLIT).is_some(),
+            is_unlit: false,
         })
     }
 }
