@@ -50,8 +50,8 @@ impl<'s> Colors<'s> {
         let triangle = place.triangle as usize;
         let material = &self.scene.materials[object.material_of(triangle)];
         let uv = uv_at(object, place);
-        let mut radiance =
-            base_reflectance(material, uv, vertex_color(object, place)) * irradiance / PI + ambient(material, uv) * self.scene.ambient;
+        let mut radiance = base_reflectance(material, uv, vertex_color(object, place)) * irradiance / PI
+            + ambient(material, uv) * self.scene.ambient;
         if !is_back {
             let picture = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
             radiance += material.emission * picture;
