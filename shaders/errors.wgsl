@@ -13,7 +13,7 @@ var<workgroup> radiances: array<f32, TILE_PIXELS>;
 var<workgroup> samples: array<u32, TILE_PIXELS>;
 var<workgroup> pixels: array<u32, TILE_PIXELS>;
 
-/// The squared error of a pixel's mean, relative to its square; mean of the channels. Means of n₁ and n₂ independent samples differ by
+/// The squared error of a pixel's mean, mean of the channels, relative to the square of its brightness. Means of n₁ and n₂ independent samples differ by
 /// σ²(1/n₁ + 1/n₂) in the mean square, and that of all has the variance σ²/(n₁ + n₂).
 fn squared_error(all: vec4<f32>, first: vec4<f32>) -> f32 {
     let later = all - first;
@@ -21,10 +21,9 @@ fn squared_error(all: vec4<f32>, first: vec4<f32>) -> f32 {
         return 1.0;
     }
     let difference = (first.xyz / first.w - later.xyz / later.w) * sqrt(first.w * later.w) / all.w;
-    let mean = all.xyz / all.w;
+    let brightness = (all.x + all.y + all.z) / (3.0 * all.w);
     let floor = DARKNESS * error_params.mean_radiance * error_params.mean_radiance;
-    let relative = min(difference * difference / max(mean * mean + floor, vec3<f32>(1e-30)), vec3<f32>(1.0));
-    return (relative.x + relative.y + relative.z) / 3.0;
+    return min(dot(difference, difference) / (3.0 * max(brightness * brightness + floor, 1e-30)), 1.0);
 }
 
 @compute @workgroup_size(64)

@@ -14,7 +14,7 @@ struct ErrorParams {
 
 /// What the samples of a tile of 8 × 8 pixels come to.
 struct TileError {
-    /// Mean over pixels and channels of the squared error of the radiance, relative to it, at most 1 each.
+    /// Mean over pixels of the squared error of the radiance, mean of the channels, relative to the pixel's brightness; at most 1 each.
     squared_error: f32,
     /// Mean radiance, W/(m² sr), of pixels and channels.
     radiance: f32,

@@ -13,8 +13,8 @@ struct Rendered {
 
 impl Rendered {
     fn of(scene: &Scene) -> Self {
-        let mut renderer = emit(scene, photons_of(&scene));
-        renderer.add_samples(samples_of(&scene)).unwrap();
+        let mut renderer = emit(scene, photons_of(scene));
+        renderer.add_samples(samples_of(scene)).unwrap();
         Self { film: renderer.film().unwrap(), layers: renderer.layers().unwrap() }
     }
 

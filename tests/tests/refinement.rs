@@ -43,14 +43,14 @@ fn refine(renderer: &mut Renderer) -> Vec<Refinement> {
 
 /// The root of the mean squared relative error against a picture that is far more exact, as docs/refinement.md defines it.
 fn error(film: &Film, exact: &Film) -> f64 {
-    let values = || film.radiance.as_flattened().iter().zip(exact.radiance.as_flattened());
-    let count = film.radiance.len() as f64 * 3.0;
-    let mean = exact.radiance.as_flattened().iter().map(|&r| f64::from(r)).sum::<f64>() / count;
-    let relative = |(&found, &exact): (&f32, &f32)| {
-        let (found, exact) = (f64::from(found), f64::from(exact));
-        ((found - exact).powi(2) / (exact * exact + 0.01 * mean * mean)).min(1.0)
+    let count = film.radiance.len() as f64;
+    let brightness = |pixel: &[f32; 3]| pixel.iter().map(|&channel| f64::from(channel)).sum::<f64>() / 3.0;
+    let mean = exact.radiance.iter().map(brightness).sum::<f64>() / count;
+    let relative = |(found, exact): (&[f32; 3], &[f32; 3])| {
+        let squares = found.iter().zip(exact).map(|(found, exact)| f64::from(found - exact).powi(2)).sum::<f64>() / 3.0;
+        (squares / (brightness(exact).powi(2) + 0.01 * mean * mean)).min(1.0)
     };
-    (values().map(relative).sum::<f64>() / count).sqrt()
+    (film.radiance.iter().zip(&exact.radiance).map(relative).sum::<f64>() / count).sqrt()
 }
 
 #[test]

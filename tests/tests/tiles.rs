@@ -31,7 +31,7 @@ fn ball_on_a_floor(side: f32, settings: &str) -> Scene {
 fn caustic_blocks(scene: &Scene, photons: u64) -> (Vec<f64>, SceneReport) {
     let (mut renderer, report) = set(scene);
     renderer.emit_photons(0..photons).unwrap();
-    renderer.add_samples(samples_of(&scene)).unwrap();
+    renderer.add_samples(samples_of(scene)).unwrap();
     let width = scene.settings.width as usize;
     let layers = renderer.layers().unwrap();
     let caustic = layers[0].channels.iter().find(|channel| channel.name.ends_with('G')).expect("a green channel");

@@ -14,6 +14,8 @@ use crate::{camera_pass::Probe, error_pass::TileErrors};
 
 /// Photons after which the maps are looked at first, as a power of two.
 const FIRST_LOOK: u32 = 14;
+/// The most photons of the renderer's own choice, as a power of two.
+const MOST_PHOTONS: u32 = 24;
 /// Photons between two chances to stop, as a power of two.
 const PHOTONS_AT_ONCE: u32 = 18;
 /// The part of the squared target error that the maps may make up, whatever the rays say.
@@ -53,7 +55,7 @@ pub struct Refinement {
     pub photons: u64,
     /// Samples of a pixel, on average.
     pub samples: f64,
-    /// Estimated error: the root of the mean over pixels of the squared error of radiance, relative to it. None until it is known.
+    /// Estimated error: the root of the mean over pixels of the squared error of radiance, relative to its brightness. None until it is known.
     pub error: Option<f64>,
 }
 
@@ -238,7 +240,7 @@ impl Course {
         self.map_error = scale * relative_error(&probe.radiance, &lit, change);
         let camera_error = relative_error(&probe.radiance, &lit, |&pixel| probe.deviation[pixel]);
         let allowed = self.target.powi(2) * self.map_share(photon_rays as f64, camera_error * PLACED_RAYS * probe.rays);
-        if self.map_error <= allowed {
+        if self.map_error <= allowed || now >= at_least(self.supply.turns, MOST_PHOTONS) {
             self.stage = Stage::Samples;
             return;
         }
@@ -290,15 +292,17 @@ fn at_least(turns: u64, bits: u32) -> u64 {
     turns << bits.saturating_sub(turns.ilog2())
 }
 
-/// The mean over some pixels of a picture, and channels, of squared deviations relative to it, at most 1 each; 0 without pixels.
+/// The mean over some pixels of a picture of squared deviations, mean of the channels, relative to the pixel's brightness and at most 1 each; 0
+/// without pixels. What is dark beside these pixels' mean counts as if it were brighter.
 fn relative_error(picture: &[Vec3], pixels: &[usize], deviation: impl Fn(&usize) -> Vec3) -> f64 {
-    let mean = picture.iter().map(|radiance| radiance.element_sum() / 3.0).sum::<f32>() / picture.len().max(1) as f32;
-    let floor = Vec3::splat((DARKNESS * mean * mean).max(f32::MIN_POSITIVE));
+    let count = pixels.len().max(1) as f32;
+    let brightness = |pixel: &usize| picture[*pixel].element_sum() / 3.0;
+    let mean = pixels.iter().map(brightness).sum::<f32>() / count;
+    let floor = (DARKNESS * mean * mean).max(f32::MIN_POSITIVE);
     let relative = |pixel: &usize| {
-        let (radiance, deviation) = (picture[*pixel], deviation(pixel));
-        f64::from((deviation * deviation / (radiance * radiance + floor)).min(Vec3::ONE).element_sum()) / 3.0
+        f64::from((deviation(pixel).length_squared() / (3.0 * (brightness(pixel).powi(2) + floor))).min(1.0))
     };
-    pixels.iter().map(relative).sum::<f64>() / pixels.len().max(1) as f64
+    pixels.iter().map(relative).sum::<f64>() / f64::from(count)
 }
 
 #[cfg(test)]

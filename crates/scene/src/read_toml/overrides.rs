@@ -29,7 +29,7 @@ use crate::{Error, error::suggestion};
 /// let overrides = overrides.into_iter().map(Override::parse).collect::<Result<_, _>>()?;
 /// let options = SceneOptions { overrides, ..SceneOptions::default() };
 /// let scene = parse_scene_with(text, Path::new("."), "ball.toml", &options)?.scene;
-/// assert_eq!(scene.settings.samples, 64);
+/// assert_eq!(scene.settings.samples, Some(64));
 /// # Ok::<(), diacaustic_scene::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
