@@ -267,7 +267,7 @@ fn inspect_tells_what_a_scene_holds_without_a_device() {
     let outcome = workplace.run_without_adapter(&["inspect", "scene.toml", "--set", "render.width=99"]);
     assert_eq!(outcome.status, Some(0), "{}", outcome.stderr);
     for text in [
-        "picture: 99 × 64, 2 samples, 20000 photons, target error 0.05, seed 0",
+        "picture: 99 × 64, 2 samples, 20000 photons, target error 0.1, seed 0",
         "objects: 2, with 3970 triangles",
         "ball: 3968 triangles, closed, 0.6000 × 0.6000 × 0.6000 m around [0.0000, 0.4000, 0.0000]; glass",
         "floor: 2 triangles, 4 open edges, 4.0000 × 0.0000 × 4.0000 m",

@@ -31,7 +31,7 @@ const FIRST_SAMPLES: u32 = 4;
 /// Samples at once, over all pixels: so many times the picture.
 const PICTURES_AT_ONCE: usize = 2;
 /// The most samples that a pixel takes of the renderer's own choice.
-const MOST_SAMPLES: u32 = 4096;
+const MOST_SAMPLES: u32 = 256;
 /// One of so many tiles may miss the target, and one in any picture: single bright paths keep some from it for long.
 const TILES_FOR_EACH_MISS: usize = 128;
 

@@ -143,7 +143,7 @@ impl Default for RenderSettings {
             height: 512,
             samples: None,
             photons: None,
-            target_error: 0.05,
+            target_error: 0.1,
             seed: 0,
             max_depth: 32,
             max_bounces: 8,
