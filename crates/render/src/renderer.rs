@@ -1,21 +1,23 @@
 //! The renderer: scene in, picture and energy maps out.
 
+mod refining;
+mod states;
+
 use std::{ops::Range, time::Instant};
 
 use diacaustic_scene::{LightGroups, Scene};
-use diacaustic_shaders::{CAMERA, PHOTONS, QueryHit, RESOLVE};
+use diacaustic_shaders::QueryHit;
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
 use crate::{
     BakeOptions, Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, Lightmap, LoopLimit, PilotReport,
-    Refinement, RenderParams, RenderState, SceneReport, Statistics,
+    RenderParams, SceneReport, Statistics,
     bake::{BakePass, BakeScene, bake},
-    camera_pass::{CameraPass, ProbedScene, Samples, Sightings},
+    camera_pass::{CameraPass, Samples, Sightings},
     display_pass::DisplayPass,
     error_pass::ErrorPass,
     features::Features,
-    fingerprint::{Difference, Fingerprint},
     gpu::Gpu,
     host_scene::HostScene,
     lights::{Lights, emissive_materials},
@@ -23,8 +25,7 @@ use crate::{
     map_sums::{EnergyMaps, ResolvePass, bytes_of_texel, most_texels},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
-    refine::{Course, Step},
-    render_state::SavedBuffer,
+    refine::Course,
     scene_buffers::{self, SceneBuffers},
     spectra_records::greatest_weight,
     tile_choice::choose_tiles,
@@ -110,30 +111,6 @@ impl OnDevice {
     /// Pixels of the picture.
     fn pixels(&self) -> u64 {
         u64::from(self.scene.settings.width) * u64::from(self.scene.settings.height)
-    }
-
-    /// What photons and samples accumulate in, by name.
-    fn accumulated(&self) -> Vec<(&'static str, &wgpu::Buffer)> {
-        let ledgers = [("ledgers", &self.photons.ledger)];
-        self.maps.accumulated().into_iter().chain(ledgers).chain(self.samples.accumulated()).collect()
-    }
-
-    /// What the bits of photons and samples depend on.
-    fn fingerprint(&self, adapter: &wgpu::AdapterInfo) -> Fingerprint {
-        let wgpu::AdapterInfo { name, driver, driver_info, .. } = adapter;
-        let mut fingerprint = Fingerprint::default();
-        fingerprint.say("version", env!("CARGO_PKG_VERSION"));
-        fingerprint.say("adapter", format!("{name} ({driver} {driver_info})"));
-        fingerprint.say("seed", self.scene.settings.seed);
-        for kernel in [PHOTONS, RESOLVE, CAMERA] {
-            fingerprint.digest(&format!("the kernel {}", kernel.name), kernel.source.as_bytes());
-        }
-        fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
-        fingerprint.extend(&self.buffers.fingerprint);
-        fingerprint.say("list of features", format!("{:?}", self.features));
-        self.photons.add_to(&mut fingerprint);
-        self.samples.add_to(&mut fingerprint);
-        fingerprint
     }
 }
 
@@ -329,87 +306,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes the render one step further toward the scene's `target_error`, and waits until it is done: photons, until the maps are exact
-    /// enough, then samples where the picture needs them. Where the scene states photons or samples, there are as many. The film may be
-    /// read and shown after every step. Blocks: for less than a second of a usual scene on two cores.
-    ///
-    /// The steps are the same in every run. An application calls either this or [`Renderer::emit_photons`] and [`Renderer::add_samples`], for this
-    /// counts its own work alone; [`Renderer::restart`] begins anew.
-    ///
-    /// # Errors
-    /// If no scene is set, the device fails, or it cut invocations short.
-    pub fn refine(&mut self) -> Result<Refinement, Error> {
-        let course = &self.scene.as_ref().ok_or(Error::NoScene)?.course;
-        match course.next_step() {
-            Step::Emit(numbers) => {
-                let end = numbers.end;
-                self.emit_photons(numbers)?;
-                self.gpu.wait()?;
-                self.on_course(|course| course.note_photons(end))
-            }
-            Step::Probe => self.probe_maps(),
-            Step::Sample(count) => {
-                self.add_samples(count)?;
-                self.gpu.wait()?;
-                self.on_course(|course| course.note_samples(count))
-            }
-            Step::Estimate => {
-                let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
-                let (samples, size) = (&on_device.samples, on_device.samples.size());
-                let errors = self.error_pass.run(&self.gpu, &samples.film, &samples.halves, size)?;
-                self.on_course(|course| course.note_errors(&errors))
-            }
-            Step::SampleTiles { tiles, count } => {
-                self.sample_tiles(&tiles, count)?;
-                self.on_course(|course| course.note_tile_samples(count))
-            }
-            Step::Rest => self.on_course(|_| ()),
-        }
-    }
-
-    /// How far [`Renderer::refine`] has come.
-    ///
-    /// # Errors
-    /// If no scene is set.
-    pub fn refinement(&self) -> Result<Refinement, Error> {
-        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
-        Ok(on_device.course.refinement(on_device.mean_samples()))
-    }
-
-    /// Makes the photons so far enough for [`Renderer::refine`], whose next steps are samples.
-    ///
-    /// # Errors
-    /// If no scene is set.
-    pub fn finish_photons(&mut self) -> Result<Refinement, Error> {
-        self.on_course(Course::finish_photons)
-    }
-
-    fn on_course(&mut self, note: impl FnOnce(&mut Course)) -> Result<Refinement, Error> {
-        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        note(&mut on_device.course);
-        self.refinement()
-    }
-
-    fn probe_maps(&mut self) -> Result<Refinement, Error> {
-        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.resolve(&self.gpu, &self.resolve_pass);
-        let photon_rays = on_device.photons.counts(&self.gpu)?.rays;
-        let probed =
-            ProbedScene { seed: on_device.scene.settings.seed, maps: &on_device.maps, groups: &on_device.groups };
-        let group = &on_device.buffers.bind_group;
-        let probe = on_device.samples.probe(&self.gpu, &mut self.camera_pass, on_device.features, group, &probed)?;
-        self.on_course(|course| course.note_probe(&probe, photon_rays))
-    }
-
-    fn sample_tiles(&mut self, tiles: &[u32], count: u32) -> Result<(), Error> {
-        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.resolve(&self.gpu, &self.resolve_pass);
-        let group = &on_device.buffers.bind_group;
-        let pixels = on_device.samples.add_to_tiles(&self.gpu, &self.camera_pass, group, tiles, count)?;
-        on_device.sample_sum += pixels * u64::from(count);
-        self.gpu.wait()
-    }
-
     /// Submits the drawing of the picture so far over the whole of a texture, which may be of any renderable colour format. Compiles a shader
     /// for each format that it meets first; does not wait for the device.
     ///
@@ -563,62 +459,6 @@ impl Renderer {
         on_device.sample_count = 0;
         on_device.sample_sum = 0;
         Ok(())
-    }
-
-    /// Reads everything that photons and samples have left, to go on from it later, in another process too. Blocks until all submitted work
-    /// is done. The state takes as much memory on the host as the sums of maps, film and layers on the device.
-    ///
-    /// # Errors
-    /// If no scene is set or the device fails.
-    pub fn save_state(&self) -> Result<RenderState, Error> {
-        let on_device = self.scene.as_ref().ok_or(Error::NoScene)?;
-        let read = |(name, buffer): (&str, &wgpu::Buffer)| {
-            Ok(SavedBuffer { name: name.to_owned(), words: self.gpu.read(buffer, 0..buffer.size() / 4)? })
-        };
-        Ok(RenderState {
-            note: String::new(),
-            photons: on_device.photon_count,
-            samples: on_device.sample_count,
-            sample_sum: on_device.sample_sum,
-            course: on_device.course.words(),
-            fingerprint: on_device.fingerprint(&self.gpu.device.adapter_info()),
-            buffers: on_device.accumulated().into_iter().map(read).collect::<Result<_, Error>>()?,
-        })
-    }
-
-    /// Puts a saved state in the place of all photons and samples so far. What follows is, to the bit, what would have followed where it was saved:
-    /// [`RenderState::photons`] and [`RenderState::samples`] tell with which to go on. Blocks until all submitted work is done.
-    ///
-    /// # Errors
-    /// If no scene is set; if the state is of another scene, seed, version of this crate or adapter; or if the device fails. What was there
-    /// before then stays.
-    pub fn restore_state(&mut self, state: &RenderState) -> Result<(), Error> {
-        let adapter = self.gpu.device.adapter_info();
-        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        if let Some(Difference { name, first, second }) = state.fingerprint.difference(&on_device.fingerprint(&adapter))
-        {
-            return Err(Error::OtherState { what: name, saved: first, found: second });
-        }
-        let buffers = on_device.accumulated();
-        let shape = |name: &str, words: u64| (name.to_owned(), words);
-        let saved: Vec<_> = state.buffers.iter().map(|saved| shape(&saved.name, saved.words.len() as u64)).collect();
-        let wanted: Vec<_> = buffers.iter().map(|(name, buffer)| shape(name, buffer.size() / 4)).collect();
-        if saved != wanted {
-            return Err(Error::BadState("its buffers are not those of this scene".to_owned()));
-        }
-        let course = Course::new(&on_device.scene.settings, on_device.photons.supply()).resumed(&state.course);
-        let course = course.ok_or_else(|| Error::BadState("how far it was is damaged".to_owned()))?;
-        self.gpu.wait()?;
-        for ((_, buffer), saved) in buffers.into_iter().zip(&state.buffers) {
-            self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&saved.words));
-        }
-        self.gpu.queue.submit([]);
-        on_device.course = course;
-        on_device.photon_count = state.photons;
-        on_device.sample_count = state.samples;
-        on_device.sample_sum = state.sample_sum;
-        on_device.unresolved = true;
-        self.gpu.wait()
     }
 
     /// Blocks until all submitted work is done.
