@@ -78,7 +78,7 @@ pub(crate) struct Session {
 
 /// What is done now and then while photons and samples come in.
 pub(crate) trait Attendant {
-    /// Is called after each chunk of work, some tens of milliseconds or one sample long.
+    /// Is called after each chunk of work, about a second long at most in a usual scene.
     fn attend(&mut self, session: &mut Session) -> Result<(), Error>;
 }
 
@@ -205,6 +205,9 @@ impl Session {
         let photon_deadline = deadline.map(|deadline| photon_deadline(Instant::now(), deadline));
         let mut refinement = self.renderer.refinement()?;
         let mut stage = refinement.stage;
+        if stage != Stage::Photons {
+            self.warn_about_photons()?;
+        }
         let mut meter = self.progress.measure(name(stage));
         while refinement.stage != Stage::Done {
             if stage == Stage::Photons && refinement.stage == Stage::Samples {

@@ -505,6 +505,12 @@ fn assert_warns(workplace: &Workplace, texts: &[&str]) {
 }
 
 #[test]
+fn photons_that_nobody_sends_are_told() {
+    let none = Workplace::new(&BALL.replace("photons = 20_000", "photons = 0"));
+    assert_warns(&none, &["no caustic can form: no photons were asked for", "--photons"]);
+}
+
+#[test]
 fn no_caster_is_told() {
     let workplace = Workplace::new(&BALL.replace("material = \"glass\"", "material = \"plaster\""));
     assert_warns(&workplace, &["no caustic can form", "no object has glass, a mirror, metal or a clear coat"]);

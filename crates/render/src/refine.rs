@@ -323,6 +323,14 @@ mod tests {
     }
 
     #[test]
+    fn both_sides_of_the_device_forgive_the_same_darkness() {
+        let after =
+            diacaustic_shaders::ERRORS.source.split("const DARKNESS: f32 = ").nth(1).expect("the kernel's constant");
+        let written = after.split(';').next().expect("its end");
+        assert_eq!(written.trim_end_matches('f').parse::<f32>().unwrap(), DARKNESS, "{written}");
+    }
+
+    #[test]
     fn stated_numbers_are_kept() {
         let mut course = Course::new(&settings(Some(1_000_000), Some(5)), SUPPLY);
         let (mut photons, mut samples) = (0, 0);

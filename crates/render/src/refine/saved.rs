@@ -60,13 +60,19 @@ impl Course {
             last_look,
             ..self
         };
-        Some(course.or_done())
+        Some(course.at_its_stage())
     }
 
-    /// The same, but done where every stated sample is taken.
-    fn or_done(self) -> Self {
-        let is_done = self.stage == Stage::Samples && self.samples.is_some_and(|samples| self.sampled >= samples);
-        Self { stage: if is_done { Stage::Done } else { self.stage }, ..self }
+    /// The same, at the stage that follows from the numbers which the scene states by now.
+    fn at_its_stage(self) -> Self {
+        let lacks_photons = self.photons.is_some_and(|photons| self.emitted < photons.min(self.supply.most));
+        let is_done = self.samples.is_some_and(|samples| self.sampled >= samples);
+        let stage = match self.stage {
+            Stage::Samples if self.sampled == 0 && lacks_photons && self.supply.turns > 0 => Stage::Photons,
+            Stage::Samples if is_done => Stage::Done,
+            stage => stage,
+        };
+        Self { stage, ..self }
     }
 }
 
@@ -139,5 +145,16 @@ mod tests {
         saved.note_samples(4);
         assert_eq!(course(Some(4)).resumed(&saved.words()).unwrap().next_step(), Step::Rest);
         assert_eq!(course(Some(5)).resumed(&saved.words()).unwrap().next_step(), Step::Sample(1));
+        let photons = |photons| {
+            let settings = RenderSettings { photons: Some(photons), ..RenderSettings::default() };
+            Course::new(&settings, PhotonSupply { turns: 1, most: 1 << 32 })
+        };
+        let mut saved = photons(100);
+        saved.note_photons(100);
+        assert_eq!(photons(150).resumed(&saved.words()).unwrap().next_step(), Step::Emit(100..150));
+        assert_eq!(photons(100).resumed(&saved.words()).unwrap().next_step(), Step::Sample(1));
+        // Samples that are lit by fewer photons would not fit those that follow.
+        saved.note_samples(1);
+        assert_eq!(photons(150).resumed(&saved.words()).unwrap().next_step(), Step::Sample(1));
     }
 }

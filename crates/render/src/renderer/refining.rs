@@ -10,7 +10,7 @@ use crate::{
 impl Renderer {
     /// Takes the render one step further toward the scene's `target_error`, and waits until it is done: photons, until the maps are exact
     /// enough, then samples where the picture needs them. Where the scene states photons or samples, there are as many. The film may be
-    /// read and shown after every step. Blocks: for less than a second of a usual scene on two cores.
+    /// read and shown after every step. Blocks: for a second or two of a usual scene on two cores.
     ///
     /// The steps are the same in every run. An application calls either this or [`Renderer::emit_photons`] and [`Renderer::add_samples`], for this
     /// counts its own work alone; [`Renderer::restart`] begins anew.
