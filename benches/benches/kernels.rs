@@ -1,7 +1,7 @@
 //! What the kernels take for what a scene asks of them: a glass teapot on a floor, 512 texels along.
 //!
 //! `kernels/photons/KIND`: 2¹⁵ photons, in photons a second: `plain` (no guide), `guided`, `footprints` (guided), `paper` (the profile, whose rays are not
-//! aimed). `kernels/photon_counts/COUNT`: guided photons, in one call. `kernels/samples/KIND`: a sample of every one of 128 × 128 pixels, in samples a second:
+//! aimed). `photon_counts/COUNT`: guided photons, in one call. `kernels/samples/KIND`: a sample of every one of 128 × 128 pixels, in samples a second:
 //! `direct` without bounces, `bounces` with 8, `paper`.
 //!
 //! ```text
@@ -42,6 +42,7 @@ fn as_in_the_paper(scene: &mut Scene) {
     scene.settings.guiding = false;
     scene.settings.max_bounces = 0;
     scene.settings.map_size = None;
+    scene.settings.photons = Some(PHOTONS);
     scene.settings.paper = Some(PaperProfile {
         energy: Vec3::splat(35.0),
         refraction: PaperRefraction::Printed,
@@ -57,7 +58,7 @@ fn emit(renderer: &mut Renderer, count: u64) {
     renderer.wait().unwrap();
 }
 
-fn kernels(criterion: &mut Criterion) {
+fn photons(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("kernels");
     group.sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::Elements(PHOTONS));
@@ -72,13 +73,23 @@ fn kernels(criterion: &mut Criterion) {
         group
             .bench_function(BenchmarkId::new("photons", name), |bencher| bencher.iter(|| emit(&mut renderer, PHOTONS)));
     }
+}
+
+fn photon_counts(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("photon_counts");
+    group.sampling_mode(SamplingMode::Flat);
     let mut guided = with(|_| {});
     for count in [1 << 10, 1 << 13, 1 << 16] {
         group.throughput(Throughput::Elements(count));
-        group.bench_function(BenchmarkId::new("photon_counts", count), |bencher| {
+        group.bench_function(BenchmarkId::from_parameter(count), |bencher| {
             bencher.iter(|| emit(&mut guided, count));
         });
     }
+}
+
+fn samples(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("kernels");
+    group.sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::Elements(u64::from(PICTURE_SIZE * PICTURE_SIZE)));
     let sample_kinds: [(&str, Change); 3] =
         [("direct", |scene| scene.settings.max_bounces = 0), ("bounces", |_| {}), ("paper", as_in_the_paper)];
@@ -93,5 +104,5 @@ fn kernels(criterion: &mut Criterion) {
     }
 }
 
-criterion_group! { name = benches; config = brief(); targets = kernels }
+criterion_group! { name = benches; config = brief(); targets = photons, samples, photon_counts }
 criterion_main!(benches);

@@ -1,15 +1,15 @@
 //! A floor's energy map of 64² to 2048² texels, on both its sides together, and 2¹⁴ and 2¹⁷ photons: how long photons take, and
 //! how long their sums take to become irradiance.
 //!
-//! `photons/SIZE/COUNT`: `Renderer::emit_photons(0..COUNT)` and the wait for it, in photons a second. Each pass emits the same
+//! `map_sizes/photons/COUNT/SIZE`: `Renderer::emit_photons(0..COUNT)` and the wait for it, in photons a second. Each pass emits the same
 //! photons again, which adds to the sums and changes no path.
 //!
-//! `resolve/SIZE`: the first sample after new photons, of 64 × 64 pixels, in texels a second: the sums become irradiance, then
+//! `map_sizes/resolve/SIZE`: the first sample after new photons, of 64 × 64 pixels, in texels a second: the sums become irradiance, then
 //! the picture is sampled once. The smallest maps show what the sample alone takes.
 //!
 //! ```text
 //! cargo bench --workspace --bench map_sizes
-//! cargo bench --workspace --bench map_sizes -- photons/2048
+//! cargo bench --workspace --bench map_sizes -- map_sizes/photons/131072
 //! ```
 
 use std::time::{Duration, Instant};
@@ -32,13 +32,13 @@ fn warm(map_size: u32) -> Renderer {
 }
 
 fn photons(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("photons");
+    let mut group = criterion.benchmark_group("map_sizes");
     group.sampling_mode(SamplingMode::Flat);
     for map_size in MAP_SIZES {
         let mut renderer = warm(map_size);
         for count in PHOTON_COUNTS {
             group.throughput(Throughput::Elements(count));
-            group.bench_function(BenchmarkId::new(map_size.to_string(), count), |bencher| {
+            group.bench_function(BenchmarkId::new(format!("photons/{count}"), map_size), |bencher| {
                 bencher.iter(|| {
                     renderer.emit_photons(0..count).unwrap();
                     renderer.wait().unwrap();
@@ -59,13 +59,13 @@ fn time_resolve(renderer: &mut Renderer) -> Duration {
 }
 
 fn resolve(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("resolve");
+    let mut group = criterion.benchmark_group("map_sizes");
     group.sampling_mode(SamplingMode::Flat);
     for map_size in MAP_SIZES {
         let mut renderer = warm(map_size);
         let texels = renderer.map_layout(floor(&teapot(map_size))).unwrap().unwrap().texel_count();
         group.throughput(Throughput::Elements(texels));
-        group.bench_function(map_size.to_string(), |bencher| {
+        group.bench_function(BenchmarkId::new("resolve", map_size), |bencher| {
             bencher.iter_custom(|passes| (0..passes).map(|_| time_resolve(&mut renderer)).sum());
         });
     }

@@ -3,24 +3,30 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::{
-    ClosedForm,
+    ClosedForm, MeasuredRefraction,
     plot::{Chart, Curve},
 };
 
 /// Indices of refraction of the paper's first table.
-const INDICES: [f64; 3] = [1.3, 1.9, 2.4];
+pub(crate) const INDICES: [f64; 3] = [1.3, 1.9, 2.4];
 /// Points of a curve.
 const POINTS: u32 = 180;
 
 /// Points of a function over an interval.
 fn curve(name: String, color: usize, dashed: bool, [from, to]: [f64; 2], f: impl Fn(f64) -> f64) -> Curve {
     let at = |k: u32| from + (to - from) * f64::from(k) / f64::from(POINTS);
-    Curve { name, color, dashed, points: (0..=POINTS).map(|k| [at(k), f(at(k))]).collect(), marked: false }
+    let points = (0..=POINTS).map(|k| [at(k), f(at(k))]).collect();
+    Curve { name, color, dashed, points, ..Curve::default() }
 }
 
 /// The angle of refraction by equation 3, radians, n the index of the incident side over that of the other.
 pub(crate) fn refracted_by_equation_3(theta_i: f64, n: f64) -> f64 {
     (n * theta_i.tan()).atan()
+}
+
+/// The angle of refraction by Snell's law, radians, for the same n; below the critical angle.
+pub(crate) fn refracted_by_snell(theta_i: f64, n: f64) -> f64 {
+    (n * theta_i.sin()).asin()
 }
 
 /// A texel's weight by equation 2 for a ray at (f, g) of its cell, itself at (0, 0).
@@ -62,7 +68,8 @@ impl ClosedForm {
         }
     }
 
-    pub(crate) fn chart(self) -> Chart {
+    /// The plot; for refraction with the angles that were measured.
+    pub(crate) fn chart(self, measured: &[MeasuredRefraction]) -> Chart {
         let named = |title: &str, x_label: &str, y_label: &str, curves| Chart {
             title: title.to_owned(),
             x_label: x_label.to_owned(),
@@ -99,21 +106,57 @@ impl ClosedForm {
                 "Equation 3: refraction over angle",
                 "angle of incidence, degrees",
                 "angle of refraction, degrees",
-                INDICES.iter().enumerate().flat_map(|(color, &ior)| refractions(color, ior)).collect(),
+                refractions(measured),
             ),
         }
     }
 }
 
-/// The two angles of refraction into an index.
-fn refractions(color: usize, ior: f64) -> [Curve; 2] {
+/// How far the rays that were measured are off their curves, degrees, at most.
+fn farthest(measured: &[MeasuredRefraction]) -> f64 {
+    let off = |points: &[[f64; 2]], law: fn(f64, f64) -> f64, ior: f64| {
+        let of_ray = |[theta_i, theta_t]: &[f64; 2]| {
+            let off = (theta_t - law(theta_i.to_radians(), 1.0 / ior).to_degrees()).abs();
+            // A ray that met no wall is as far off as can be.
+            if off.is_nan() { f64::INFINITY } else { off }
+        };
+        points.iter().map(of_ray).fold(0.0, f64::max)
+    };
+    let of_index = |MeasuredRefraction { ior, printed, exact }: &MeasuredRefraction| {
+        off(printed, refracted_by_equation_3, *ior).max(off(exact, refracted_by_snell, *ior))
+    };
+    measured.iter().map(of_index).fold(0.0, f64::max)
+}
+
+/// What was measured of refraction, as a sentence; empty if nothing was.
+pub(crate) fn about_rays(measured: &[MeasuredRefraction]) -> String {
+    if measured.is_empty() {
+        return String::new();
+    }
+    let rays: usize = measured.iter().map(|of_index| of_index.printed.len() + of_index.exact.len()).sum();
+    format!(
+        "The points are {rays} rays that the kernels have sent through slabs of glass, by the one law and by the other: {:.2}° off their curves at most.",
+        farthest(measured)
+    )
+}
+
+/// The two angles of refraction into each index, and what was measured of both.
+fn refractions(measured: &[MeasuredRefraction]) -> Vec<Curve> {
     let end = FRAC_PI_2.to_degrees() - 0.5;
-    let printed = move |degrees: f64| refracted_by_equation_3(degrees.to_radians(), 1.0 / ior).to_degrees();
-    let exact = move |degrees: f64| (degrees.to_radians().sin() / ior).asin().to_degrees();
-    [
-        curve(format!("equation 3, into {ior}"), color, false, [0.0, end], printed),
-        curve(format!("Snell, into {ior}"), color, true, [0.0, end], exact),
-    ]
+    let curves = INDICES.iter().enumerate().flat_map(|(color, &ior)| {
+        [
+            curve(format!("equation 3, into {ior}"), color, false, [0.0, end], move |degrees| {
+                refracted_by_equation_3(degrees.to_radians(), 1.0 / ior).to_degrees()
+            }),
+            curve(format!("Snell, into {ior}"), color, true, [0.0, end], move |degrees| {
+                refracted_by_snell(degrees.to_radians(), 1.0 / ior).to_degrees()
+            }),
+        ]
+    });
+    let points = measured.iter().flat_map(|of_index| of_index.printed.iter().chain(&of_index.exact)).copied();
+    let rays = Curve { name: "rays of the kernel".to_owned(), points: points.collect(), color: 6, ..Curve::default() };
+    let rays = (!measured.is_empty()).then_some(Curve { marked: true, unconnected: true, ..rays });
+    curves.chain(rays).collect()
 }
 
 #[cfg(test)]
@@ -143,8 +186,8 @@ mod tests {
 
     #[test]
     fn equation_3_is_snells_law_to_first_order_only() {
-        let snell = |theta: f64| (theta.sin() / 1.5).asin();
-        assert!((refracted_by_equation_3(0.01, 1.0 / 1.5) - snell(0.01)).abs() < 1e-6);
-        assert!(refracted_by_equation_3(1.2, 1.0 / 1.5) > snell(1.2) + 0.2);
+        let n = 1.0 / 1.5;
+        assert!((refracted_by_equation_3(0.01, n) - refracted_by_snell(0.01, n)).abs() < 1e-6);
+        assert!(refracted_by_equation_3(1.2, n) > refracted_by_snell(1.2, n) + 0.2);
     }
 }

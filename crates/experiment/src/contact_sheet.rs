@@ -100,9 +100,12 @@ fn strips<'r>(experiment: &Experiment, rendered: &'r Rendered) -> Vec<Strip<'r>>
             for (model, of_model) in experiment.models.iter().enumerate() {
                 for (column, column_step) in table.columns.steps.iter().enumerate() {
                     let Some(cell) = rendered.cell(index, row, column, model) else { continue };
-                    let first = if column == 0 { format!("{} ", of_model.name) } else { String::new() };
-                    let of_row = if column == 0 { step.label.as_str() } else { "" };
-                    strip.labels.push(format!("{first}{of_row}\n{}", column_step.label));
+                    let first = match (column, step.label.as_str()) {
+                        (0, "") => format!("{}: {}", of_model.name, table.columns.label),
+                        (0, of_row) => format!("{}, {of_row}: {}", of_model.name, table.columns.label),
+                        _ => String::new(),
+                    };
+                    strip.labels.push(format!("{first}\n{}", column_step.label));
                     strip.cells.push(cell);
                 }
             }

@@ -63,6 +63,16 @@ impl Figure {
         }
     }
 
+    /// What follows its number on the page, `irradiance` being the unit of that; empty for numbers without a unit.
+    pub(crate) fn suffix(self, irradiance: &str) -> String {
+        match self {
+            Self::Mean | Self::Peak => format!(" {irradiance}"),
+            Self::Area => " m²".to_owned(),
+            Self::PhotonSeconds | Self::Seconds => " s".to_owned(),
+            Self::Spottedness | Self::Energy | Self::Colour | Self::Error => String::new(),
+        }
+    }
+
     /// Its name in CSV.
     pub fn key(self) -> &'static str {
         match self {

@@ -72,9 +72,10 @@ impl Rendered {
             true => line.labels.iter().zip(&shown).map(|(label, value)| format!("{label}: {value}")).collect(),
             false => shown,
         };
+        let unit = check.figure.suffix(&experiment.models[model].unit);
         Judgement {
             holds,
-            evidence: format!("{place}{} {}; expected {expected}", check.figure, labelled.join(separator)),
+            evidence: format!("{place}{} {}{unit}; expected {expected}", check.figure, labelled.join(separator)),
         }
     }
 }

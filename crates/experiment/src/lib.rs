@@ -13,6 +13,7 @@ mod error;
 mod figures;
 mod file;
 mod findings;
+mod measured_refraction;
 mod page;
 mod plan;
 mod plot;
@@ -26,4 +27,5 @@ pub use file::{
     Side, Step, Table,
 };
 pub use findings::{Judgement, Verdict};
+pub use measured_refraction::MeasuredRefraction;
 pub use rendered::{CellResult, Progress, Rendered};

@@ -2,7 +2,10 @@
 
 use std::fmt::Write as _;
 
-use crate::{CellResult, Experiment, Figure, Finding, Rendered, Table, Verdict, findings::three_digits};
+use crate::{
+    CellResult, ClosedForm, Experiment, Figure, Finding, Rendered, Table, Verdict, closed_forms::about_rays,
+    findings::three_digits,
+};
 
 /// Text in HTML and SVG.
 pub(crate) fn escape(text: &str) -> String {
@@ -21,15 +24,18 @@ pub(crate) fn page(experiment: &Experiment, rendered: &Rendered) -> String {
     paragraphs(&mut html, &experiment.about);
     contents(&mut html, experiment);
     if !experiment.findings.is_empty() {
+        let judged: Vec<_> =
+            experiment.findings.iter().map(|finding| (finding, rendered.judge(experiment, finding))).collect();
         html += "<h2 id=\"findings\">Findings</h2>\n";
-        for finding in &experiment.findings {
-            write_finding(&mut html, experiment, finding, &rendered.judge(experiment, finding));
+        write_overview(&mut html, experiment, &judged);
+        for (number, (finding, verdicts)) in judged.iter().enumerate() {
+            write_finding(&mut html, experiment, number, finding, verdicts);
         }
     }
     for (index, table) in experiment.tables.iter().enumerate() {
         write_table(&mut html, experiment, rendered, index, table);
     }
-    write_closed_forms(&mut html, experiment);
+    write_closed_forms(&mut html, experiment, rendered);
     write_definitions(&mut html, experiment);
     html += "<footer>Made by <code>diacaustic experiment</code>. All figures: <a href=\"figures.csv\">figures.csv</a>; all pictures together: \
              <a href=\"contact-sheet.png\">contact-sheet.png</a>.</footer>\n</body></html>\n";
@@ -59,10 +65,38 @@ fn contents(html: &mut String, experiment: &Experiment) {
     }
 }
 
-fn write_finding(html: &mut String, experiment: &Experiment, finding: &Finding, verdicts: &[Verdict]) {
+/// A verdict as a class of the style sheet and in words.
+fn in_words(verdict: &Verdict) -> (&'static str, &'static str) {
+    if verdict.holds() { ("holds", "holds") } else { ("fails", "does not hold") }
+}
+
+/// All findings at a glance: a line for each, a column for each model.
+fn write_overview(html: &mut String, experiment: &Experiment, judged: &[(&Finding, Vec<Verdict>)]) {
+    html.push_str("<div class=\"tables\"><table class=\"overview\"><tr><th></th>");
+    for model in &experiment.models {
+        let _ = write!(html, "<th>{}</th>", escape(&model.name));
+    }
+    html.push_str("</tr>\n");
+    for (number, (finding, verdicts)) in judged.iter().enumerate() {
+        let _ = write!(html, "<tr><td><a href=\"#finding-{}\">{}</a></td>", number + 1, escape(&finding.text));
+        for model in 0..experiment.models.len() {
+            match verdicts.iter().find(|verdict| verdict.model == model).map(in_words) {
+                Some((class, word)) => {
+                    let _ = write!(html, "<td class=\"{class}\">{word}</td>");
+                }
+                None => html.push_str("<td>–</td>"),
+            }
+        }
+        html.push_str("</tr>\n");
+    }
+    html.push_str("</table></div>\n");
+}
+
+fn write_finding(html: &mut String, experiment: &Experiment, number: usize, finding: &Finding, verdicts: &[Verdict]) {
     let _ = writeln!(
         html,
-        "<div class=\"finding\"><p>{} <a href=\"#{}\" title=\"to the table\">↓</a></p>",
+        "<div class=\"finding\" id=\"finding-{}\"><p>{} <a href=\"#{}\" title=\"to the table\">↓</a></p>",
+        number + 1,
         escape(&finding.text),
         finding.table
     );
@@ -70,7 +104,7 @@ fn write_finding(html: &mut String, experiment: &Experiment, finding: &Finding, 
     for verdict in verdicts {
         let model = &experiment.models[verdict.model];
         outcome.push((model.name.as_str(), verdict.holds()));
-        let (class, word) = if verdict.holds() { ("holds", "holds") } else { ("fails", "does not hold") };
+        let (class, word) = in_words(verdict);
         let _ = write!(
             html,
             "<div class=\"verdict\"><span class=\"model\">{}</span><div><span class=\"{class}\">{word}</span>",
@@ -139,22 +173,22 @@ fn write_cell(html: &mut String, cell: &CellResult, unit: &str) {
     let _ = write!(html, "<img src=\"{}\" width=\"{width}\" height=\"{height}\" alt=\"\"><dl>", cell.picture);
     for figure in Figure::ALL {
         let Some(value) = cell.figures.get(figure) else { continue };
-        let with_reference = cell.figures.error.is_some();
-        let suffix = match figure {
-            Figure::Mean | Figure::Peak => format!(" {unit}"),
-            Figure::Area => " m²".to_owned(),
-            Figure::PhotonSeconds if with_reference => " s".to_owned(),
+        let is_shown = match figure {
             // Times of single pictures say little but beside an error; colour says little of gray light.
-            Figure::PhotonSeconds | Figure::Seconds => continue,
-            Figure::Colour if value < 0.005 => continue,
-            Figure::Spottedness | Figure::Energy | Figure::Colour | Figure::Error => String::new(),
+            Figure::PhotonSeconds => cell.figures.error.is_some(),
+            Figure::Seconds => false,
+            Figure::Colour => value >= 0.005,
+            _ => true,
         };
-        let _ = write!(html, "<dt>{figure}</dt><dd>{}{}</dd>", three_digits(value), escape(&suffix));
+        if !is_shown {
+            continue;
+        }
+        let _ = write!(html, "<dt>{figure}</dt><dd>{}{}</dd>", three_digits(value), escape(&figure.suffix(unit)));
     }
     html.push_str("</dl>");
 }
 
-fn write_closed_forms(html: &mut String, experiment: &Experiment) {
+fn write_closed_forms(html: &mut String, experiment: &Experiment, rendered: &Rendered) {
     if experiment.closed_forms.is_empty() {
         return;
     }
@@ -162,9 +196,10 @@ fn write_closed_forms(html: &mut String, experiment: &Experiment) {
     for form in &experiment.closed_forms {
         let _ = writeln!(
             html,
-            "<figure>{}<figcaption>{}</figcaption></figure>",
-            form.chart().svg(),
-            escape(form.caption())
+            "<figure>{}<figcaption>{} {}</figcaption></figure>",
+            form.chart(&rendered.refractions).svg(),
+            escape(form.caption()),
+            if *form == ClosedForm::Refraction { about_rays(&rendered.refractions) } else { String::new() }
         );
     }
     html.push_str("</div>\n");

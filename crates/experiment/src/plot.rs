@@ -27,6 +27,8 @@ pub(crate) struct Curve {
     pub dashed: bool,
     /// Whether the points are marked.
     pub marked: bool,
+    /// Whether no line joins the points.
+    pub unconnected: bool,
 }
 
 /// Colours that colour-blind eyes tell apart (Okabe and Ito 2008).
@@ -164,6 +166,12 @@ impl Chart {
         for (index, curve) in self.curves.iter().enumerate() {
             let x = LEFT + LEGEND[0] * (index % 2) as f64;
             let y = BOTTOM + 56.0 + LEGEND[1] * (index / 2) as f64;
+            if curve.unconnected {
+                let _ =
+                    write!(svg, "<circle cx=\"{}\" cy=\"{}\" r=\"3.5\" fill=\"{}\"/>", x + 12.0, y - 4.0, color(curve));
+                let _ = write!(svg, "<text x=\"{}\" y=\"{y}\">{}</text>", x + 30.0, escape(&curve.name));
+                continue;
+            }
             let _ = write!(
                 svg,
                 "<path d=\"M{x} {}h24\" stroke=\"{}\" stroke-width=\"2\"{}/><text x=\"{}\" y=\"{y}\">{}</text>",
@@ -189,7 +197,7 @@ fn draw_curve(svg: &mut String, curve: &Curve, x: &Scale, y: &Scale, logarithmic
     let drawable = |p: &&[f64; 2]| (0..2).all(|axis| p[axis].is_finite() && (!logarithmic[axis] || p[axis] > 0.0));
     let places: Vec<_> = curve.points.iter().filter(drawable).map(|p| [x.place(p[0]), y.place(p[1])]).collect();
     let path: Vec<_> = places.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
-    if places.len() > 1 {
+    if places.len() > 1 && !curve.unconnected {
         let _ = write!(
             svg,
             "<path d=\"M{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>",

@@ -9,10 +9,11 @@ use diacaustic::{
 use diacaustic_output::{Display, Picture, Tone};
 
 use crate::{
-    Error, Experiment, Figures, Measure,
+    ClosedForm, Error, Experiment, Figures, Measure, MeasuredRefraction,
     contact_sheet::write_contact_sheet,
     csv::csv,
     figures::relative_error,
+    measured_refraction::measure_refractions,
     page::page,
     plan::{Cell, Job},
 };
@@ -58,6 +59,8 @@ pub struct CellResult {
 pub struct Rendered {
     /// Every cell.
     pub cells: Vec<CellResult>,
+    /// What the kernels make of equation 3 and of Snell's law, if the experiment plots them.
+    pub refractions: Vec<MeasuredRefraction>,
 }
 
 /// A job that is done.
@@ -92,6 +95,9 @@ impl Experiment {
             let result = get(&cell.job, "")?;
             let reference = cell.reference.as_ref().map(|job| get(job, ", reference")).transpose()?;
             rendered.cells.push(self.result(cell, &result, reference.as_deref()));
+        }
+        if self.closed_forms.contains(&ClosedForm::Refraction) {
+            rendered.refractions = measure_refractions(renderer)?;
         }
         Ok(rendered)
     }

@@ -10,7 +10,8 @@ use crate::{
 impl Rendered {
     /// Every plot of the experiment, by its name, as SVG.
     pub fn plots(&self, experiment: &Experiment) -> Vec<(String, String)> {
-        let closed = experiment.closed_forms.iter().map(|form| (form.id().to_owned(), form.chart().svg()));
+        let closed =
+            experiment.closed_forms.iter().map(|form| (form.id().to_owned(), form.chart(&self.refractions).svg()));
         let drawn = experiment.plots.iter().map(|plot| (plot.id.clone(), self.chart(experiment, plot).svg()));
         closed.chain(drawn).collect()
     }
@@ -36,7 +37,8 @@ impl Rendered {
                 let model_name = if models.len() > 1 { of_model.name.as_str() } else { "" };
                 let parts: Vec<_> =
                     [line.name.as_str(), model_name].into_iter().filter(|part| !part.is_empty()).collect();
-                curves.push(Curve { name: parts.join(", "), points, color, dashed: number > 0, marked: true });
+                let (name, dashed) = (parts.join(", "), number > 0);
+                curves.push(Curve { name, points, color, dashed, marked: true, ..Curve::default() });
             }
         }
         let is_named = plot.over.is_none() && steps.iter().any(|step| step.x.is_none());
