@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Whether a still part of an animation's picture flickers.
 
-    scripts/flicker.py SCENE --region X0,Y0,X1,Y1 [--frames 48] [--keep FOLDER]      (pip install numpy OpenEXR)
+    scripts/flicker.py SCENE --region X0,Y0,X1,Y1 [--frames 48] [--set KEY=VALUE]... [--keep FOLDER]      (pip install numpy OpenEXR)
 
 Renders frames 1 to N three times with target/release/diacaustic: with the scene's seed in all of them ("fixed"), with a seed of each frame
 ("per_frame"), and so with every track held at its first value ("still"), which shows the noise alone. In the region, pixels from X0 to X1 and Y0 to Y1
@@ -21,7 +21,7 @@ REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
 
 
-def render(scene, frames, output, *overrides):
+def render(scene, frames, output, overrides):
     sets = [flag for override in ('output.layers=["variance"]', *overrides) for flag in ("--set", override)]
     command = [PROGRAM, scene, "--quiet", "--frames", f"{frames[0]}..{frames[1]}", "--output", output, *sets]
     subprocess.run(command, check=True)
@@ -60,6 +60,7 @@ def main():
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("--region", type=numbers, required=True)
     parser.add_argument("--frames", type=int, default=48)
+    parser.add_argument("--set", action="append", default=[], dest="sets", metavar="KEY=VALUE")
     parser.add_argument("--keep")
     arguments = parser.parse_args()
     scene, frames = arguments.scene, arguments.frames
@@ -71,7 +72,7 @@ def main():
         measured = {}
         for name, overrides in runs.items():
             (folder / name).mkdir(parents=True, exist_ok=True)
-            render(scene, (1, frames), folder / name / "a.exr", *overrides)
+            render(scene, (1, frames), folder / name / "a.exr", [*arguments.sets, *overrides])
             flicker, stated, mean = variances(folder / name, frames, arguments.region)
             measured[name] = flicker
             print(f"| {name} | {flicker ** 0.5:.2e} | {stated ** 0.5:.2e} | {flicker ** 0.5 / mean:.2%} |", flush=True)
@@ -79,7 +80,7 @@ def main():
         print(f"\nvariance per_frame / (still + fixed): {ratio:.3f}")
         same = True
         for frame in (2, frames - 1):
-            render(scene, (frame, frame), folder / "alone.exr")
+            render(scene, (frame, frame), folder / "alone.exr", arguments.sets)
             name = f"{frame:04}.exr"
             alone, together = ((folder / path).read_bytes() for path in (f"alone.{name}", f"fixed/a.{name}"))
             same &= alone == together

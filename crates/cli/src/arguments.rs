@@ -1,8 +1,8 @@
 //! The arguments of the process: a command, or what `render` takes.
 
-use std::ffi::OsString;
+use std::{ffi::OsString, path::Path};
 
-use clap::{Args as _, FromArgMatches as _, Subcommand as _};
+use clap::{Args as _, FromArgMatches as _, Subcommand as _, error::ErrorKind};
 
 use crate::commands::{
     bake::BakeArguments,
@@ -22,6 +22,8 @@ Examples:
       changes the scene without changing its file
   diacaustic teapot.toml --time-limit 60 --energy-maps maps --stats teapot.json
       stops after a minute; writes irradiance and statistics beside the picture
+  diacaustic turntable.toml --frames 1..48 --output frames/turntable.png
+      renders an animation as frames/turntable.0001.png to frames/turntable.0048.png
   diacaustic teapot.toml --checkpoint teapot.state --every 5min
       keeps how far it is; after a crash, the same with --resume teapot.state goes on to the same picture
   diacaustic vase.glb --floor
@@ -38,6 +40,27 @@ Examples:
 Exit status: 0 when everything is written, 2 when the arguments or the scene are wrong, 1 when the device or a file fails, 130 after Ctrl-C,
 which writes what there is; a second one ends the program at once.";
 
+const BAKE_EXAMPLES: &str = "\
+Examples:
+  diacaustic bake teapot.toml --size 1024
+      writes floor.exr and the other lightmaps, and scene.glb, into teapot.baked
+  diacaustic bake house.glb --texels-per-metre 50 --png --output lightmaps
+      writes lightmaps of one resolution everywhere, as pictures too";
+
+const INSPECT_EXAMPLES: &str = "\
+Examples:
+  diacaustic inspect teapot.toml
+      tells what the scene holds, what it takes on a GPU, and which GPUs there are
+  diacaustic inspect teapot.toml --set render.map_size=2048 --device-memory 512MiB
+      fails if that does not fit";
+
+const EXPERIMENT_EXAMPLES: &str = "\
+Examples:
+  diacaustic experiment assets/experiments/paper.toml
+      writes paper/index.html
+  diacaustic experiment assets/experiments/paper.toml --set render.samples=4 --output quick
+      writes a quick look at it to quick/index.html";
+
 /// Renders glass and the caustics that it casts.
 ///
 /// Reads a scene, traces photons from its lights through glass and mirrors into energy maps, renders the picture on the GPU and
@@ -47,12 +70,16 @@ which writes what there is; a second one ends the program at once.";
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub enum Command {
     /// Render a scene and write its picture, energy maps and statistics; this is what happens without a command
+    #[command(after_help = EXAMPLES)]
     Render(RenderArguments),
     /// Write the light on every receiver as a lightmap, and the scene with its light as glTF
+    #[command(after_help = BAKE_EXAMPLES)]
     Bake(BakeArguments),
     /// Tell what a scene holds, without rendering it
+    #[command(after_help = INSPECT_EXAMPLES)]
     Inspect(InspectArguments),
     /// Sweep over a scene: tables of pictures with figures, findings judged, all on one page
+    #[command(after_help = EXPERIMENT_EXAMPLES)]
     Experiment(ExperimentArguments),
     /// Print what a shell needs to complete the command line
     Completions(CompletionsArguments),
@@ -73,12 +100,27 @@ impl Command {
     /// # Errors
     /// If they are wrong, or ask for help or the version.
     pub fn parse(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Self, clap::Error> {
-        let matches = Self::interface().try_get_matches_from(arguments)?;
+        let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+        let matches = Self::interface().try_get_matches_from(&arguments).map_err(|error| {
+            // A command with a slip of the pen looks like a scene that another follows.
+            if error.kind() == ErrorKind::ArgumentConflict && !is_scene(arguments.get(1)) {
+                let commands = Self::augment_subcommands(clap::Command::new("diacaustic"));
+                return commands.try_get_matches_from(&arguments).err().unwrap_or(error);
+            }
+            error
+        })?;
         match matches.subcommand_name() {
             Some(_) => Self::from_arg_matches(&matches),
             None => RenderArguments::from_arg_matches(&matches).map(Self::Render),
         }
     }
+}
+
+/// Whether an argument may be a scene: a flag before one, a file, or a name with an ending.
+fn is_scene(argument: Option<&OsString>) -> bool {
+    argument.map(Path::new).is_none_or(|path| {
+        path.as_os_str().as_encoded_bytes().starts_with(b"-") || path.extension().is_some() || path.exists()
+    })
 }
 
 #[cfg(test)]
@@ -101,6 +143,14 @@ mod tests {
         assert_eq!(bare, parse(&format!("render {flags}")).unwrap());
         assert!(matches!(bare, Command::Render(arguments) if arguments.samples == Some(3)));
         assert!(matches!(parse("inspect a.toml"), Ok(Command::Inspect(_))));
+    }
+
+    #[test]
+    fn a_misspelt_command_is_named() {
+        let message = parse("inspekt a.toml").unwrap_err().render().to_string();
+        assert!(message.contains("unrecognized subcommand 'inspekt'") && message.contains("'inspect'"), "{message}");
+        let message = parse("a.toml b.toml").unwrap_err().render().to_string();
+        assert!(!message.contains("unrecognized"), "{message}");
     }
 
     #[test]

@@ -32,6 +32,9 @@ pub enum Error {
         /// The option, without its dashes.
         option: &'static str,
     },
+    /// A mesh is given in place of a scene.
+    #[error("{}: this is a mesh, which has neither camera nor light: name it in a scene file (.toml), mesh = \"{}\"", .0.display(), .0.display())]
+    MeshAsScene(PathBuf),
     /// Frames are asked for, and the scene is glTF.
     #[error("{}: --frames goes with a scene file (.toml) that has an [animation], and this is a glTF file", .0.display())]
     FramesOfGltf(PathBuf),
@@ -68,6 +71,16 @@ pub enum Error {
         /// The number of the signal.
         signal: u8,
     },
+    /// An experiment was asked to end before it was done.
+    #[error("interrupted; the page has {done} of {total} pictures")]
+    ExperimentInterrupted {
+        /// The number of the signal.
+        signal: u8,
+        /// Pictures that are there.
+        done: usize,
+        /// Pictures in all.
+        total: usize,
+    },
     /// The system does not say when the program is asked to end.
     #[error("signals cannot be watched for: {0}")]
     Signals(#[source] std::io::Error),
@@ -91,8 +104,9 @@ impl Error {
         use diacaustic::Error as Render;
         match self {
             Self::Scene(_) | Self::NamedTwice(_) | Self::FloorOfSceneFile(_) | Self::GltfOption { .. } => 2,
-            Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } => 2,
+            Self::OverrideOfGltf { .. } | Self::FramesOfGltf(_) | Self::Resume { .. } | Self::MeshAsScene(_) => 2,
             Self::Interrupted { signal } | Self::BakeInterrupted { signal } => 128 + signal,
+            Self::ExperimentInterrupted { signal, .. } => 128 + signal,
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
             Self::Experiment(error) => error.exit_status(),

@@ -81,6 +81,9 @@ impl SceneArguments {
     }
 
     fn load_with(&self, frame: Option<u32>, may_lack_camera: bool) -> Result<LoadedScene, Error> {
+        if has_ending(&self.scene, &["obj", "ply", "stl"]) {
+            return Err(Error::MeshAsScene(self.scene.clone()));
+        }
         let read = ReadOptions { allow_outside: self.allow_outside };
         if self.is_gltf() {
             if frame.is_some() {
@@ -115,10 +118,11 @@ impl SceneArguments {
 
     /// Whether the scene is a glTF file by its name.
     pub fn is_gltf(&self) -> bool {
-        has_gltf_ending(&self.scene)
+        has_ending(&self.scene, &["gltf", "glb"])
     }
 }
 
-fn has_gltf_ending(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ["gltf", "glb"].iter().any(|known| ending.eq_ignore_ascii_case(known)))
+/// Whether a file's name has one of some endings, in any case.
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    path.extension().is_some_and(|ending| endings.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }

@@ -7,6 +7,8 @@ use crate::{Check, Expectation, Experiment, Finding, Rendered};
 pub struct Judgement {
     /// Whether it holds.
     pub holds: bool,
+    /// Whether all that it looks at was measured.
+    pub is_measured: bool,
     /// The row or column, the figure and its values, with what was expected of them.
     pub evidence: String,
 }
@@ -21,6 +23,11 @@ pub struct Verdict {
 }
 
 impl Verdict {
+    /// Whether all that the checks look at was measured: not where the experiment ended before.
+    pub fn is_measured(&self) -> bool {
+        self.judgements.iter().all(|judgement| judgement.is_measured)
+    }
+
     /// Whether all checks hold.
     pub fn holds(&self) -> bool {
         self.judgements.iter().all(|judgement| judgement.holds)
@@ -47,7 +54,8 @@ impl Rendered {
 
     fn judge_check(&self, experiment: &Experiment, table: usize, model: usize, check: &Check) -> Judgement {
         let Some(line) = check.line(&experiment.tables[table]) else {
-            return Judgement { holds: false, evidence: "the table has no such row or column".to_owned() };
+            let evidence = "the table has no such row or column".to_owned();
+            return Judgement { holds: false, is_measured: false, evidence };
         };
         let value = |&(row, column): &(usize, usize)| {
             let cell = self.cell(table, row, column, model);
@@ -75,6 +83,7 @@ impl Rendered {
         let unit = check.figure.suffix(&experiment.models[model].unit);
         Judgement {
             holds,
+            is_measured: values.iter().all(|value| value.is_finite()),
             evidence: format!("{place}{} {}{unit}; expected {expected}", check.figure, labelled.join(separator)),
         }
     }

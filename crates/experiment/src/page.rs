@@ -67,7 +67,11 @@ fn contents(html: &mut String, experiment: &Experiment) {
 
 /// A verdict as a class of the style sheet and in words.
 fn in_words(verdict: &Verdict) -> (&'static str, &'static str) {
-    if verdict.holds() { ("holds", "holds") } else { ("fails", "does not hold") }
+    match (verdict.is_measured(), verdict.holds()) {
+        (false, _) => ("model", "not measured"),
+        (true, true) => ("holds", "holds"),
+        (true, false) => ("fails", "does not hold"),
+    }
 }
 
 /// All findings at a glance: a line for each, a column for each model.
@@ -116,9 +120,9 @@ fn write_finding(html: &mut String, experiment: &Experiment, number: usize, find
         }
         html.push_str("</div></div>\n");
     }
-    match finding.reason(&outcome) {
+    match finding.reason(&outcome).filter(|_| verdicts.iter().all(Verdict::is_measured)) {
         Some(reason) => paragraphs(html, reason),
-        None if finding.why.is_empty() => {}
+        None if finding.why.is_empty() || !verdicts.iter().all(Verdict::is_measured) => {}
         None => html.push_str("<p>The experiment's file gives no reason for this outcome.</p>\n"),
     }
     html.push_str("</div>\n");
@@ -149,7 +153,7 @@ fn write_table(html: &mut String, experiment: &Experiment, rendered: &Rendered, 
             for column in 0..table.columns.steps.len() {
                 html.push_str("<td>");
                 if let Some(cell) = rendered.cell(index, row, column, *model) {
-                    write_cell(html, cell, &of_model.unit);
+                    write_cell(html, cell, &of_model.unit, shown_width(table));
                 }
                 html.push_str("</td>");
             }
@@ -164,11 +168,23 @@ fn write_table(html: &mut String, experiment: &Experiment, rendered: &Rendered, 
     html.push_str("</div>\n");
 }
 
-/// Pixels that a picture has on the page, at most.
-const SHOWN_WIDTH: u32 = 240;
+/// Pixels that a picture has on the page, at most and at least, and those of a table without its row headings.
+const SHOWN_WIDTH: [u32; 2] = [240, 120];
+const TABLE_WIDTH: u32 = 1130;
+const HEADING_WIDTH: u32 = 130;
+/// The space beside a picture.
+const CELL_GAP: u32 = 12;
 
-fn write_cell(html: &mut String, cell: &CellResult, unit: &str) {
-    let width = cell.width.min(SHOWN_WIDTH);
+/// Pixels of a table's pictures on the page, such that all columns are seen at once, unless they are very many.
+fn shown_width(table: &Table) -> u32 {
+    let [most, least] = SHOWN_WIDTH;
+    let heading = if table.rows.is_some() { HEADING_WIDTH } else { 0 };
+    let columns = table.columns.steps.len().max(1) as u32;
+    ((TABLE_WIDTH - heading) / columns).saturating_sub(CELL_GAP).clamp(least, most)
+}
+
+fn write_cell(html: &mut String, cell: &CellResult, unit: &str, shown_width: u32) {
+    let width = cell.width.min(shown_width);
     let height = u64::from(cell.height) * u64::from(width) / u64::from(cell.width.max(1));
     let _ = write!(html, "<img src=\"{}\" width=\"{width}\" height=\"{height}\" alt=\"\"><dl>", cell.picture);
     for figure in Figure::ALL {

@@ -1,6 +1,6 @@
 //! Renders the cells.
 
-use std::{collections::BTreeMap, path::Path, rc::Rc, time::Instant};
+use std::{collections::BTreeMap, ops::ControlFlow, path::Path, rc::Rc, time::Instant};
 
 use diacaustic::{
     Film, Renderer, Stage,
@@ -72,11 +72,16 @@ struct Done {
 }
 
 impl Experiment {
-    /// Renders every cell; cells with equal scenes once. Blocks until all is done; `progress` hears of each picture before it begins.
+    /// Renders every cell; cells with equal scenes once. Blocks until all is done; `progress` hears of each picture before it begins, and may
+    /// end the work there: then the cells so far are all that there is, and findings about others are not judged.
     ///
     /// # Errors
     /// If a scene cannot be read or rendered, or has no such object with an energy map.
-    pub fn render(&self, renderer: &mut Renderer, mut progress: impl FnMut(Progress<'_>)) -> Result<Rendered, Error> {
+    pub fn render(
+        &self,
+        renderer: &mut Renderer,
+        mut progress: impl FnMut(Progress<'_>) -> ControlFlow<()>,
+    ) -> Result<Rendered, Error> {
         let cells = self.cells();
         let keys = cells.iter().flat_map(|cell| std::iter::once(&cell.job).chain(&cell.reference));
         let total = keys.collect::<std::collections::BTreeSet<_>>().len();
@@ -85,15 +90,23 @@ impl Experiment {
         for cell in &cells {
             let mut get = |job: &Job, what: &str| {
                 if let Some(known) = done.get(job) {
-                    return Ok(Rc::clone(known));
+                    return Ok(Some(Rc::clone(known)));
                 }
-                progress(Progress { name: &format!("{}{what}", cell.name), done: done.len(), total });
+                if progress(Progress { name: &format!("{}{what}", cell.name), done: done.len(), total }).is_break() {
+                    return Ok(None);
+                }
                 let result = Rc::new(self.run(renderer, cell, job)?);
                 done.insert(job.clone(), Rc::clone(&result));
-                Ok::<_, Error>(result)
+                Ok::<_, Error>(Some(result))
             };
-            let result = get(&cell.job, "")?;
-            let reference = cell.reference.as_ref().map(|job| get(job, ", reference")).transpose()?;
+            let Some(result) = get(&cell.job, "")? else { return Ok(rendered) };
+            let reference = match &cell.reference {
+                None => None,
+                Some(job) => match get(job, ", reference")? {
+                    None => return Ok(rendered),
+                    reference => reference,
+                },
+            };
             rendered.cells.push(self.result(cell, &result, reference.as_deref()));
         }
         if self.closed_forms.contains(&ClosedForm::Refraction) {

@@ -1,6 +1,6 @@
 //! What the page shows of equation 3: rays that the kernels refract lie on the curves that are plotted.
 
-use std::fs;
+use std::{fs, ops::ControlFlow};
 
 use diacaustic::{Renderer, RendererOptions};
 use diacaustic_experiment::Experiment;
@@ -37,7 +37,7 @@ fn kernels_refract_as_the_curves_of_the_page_do() {
     let experiment = Experiment::read(&folder.path().join("refraction.toml")).unwrap();
     let gpu = open(&OpenOptions::default()).unwrap();
     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default()).unwrap();
-    let rendered = experiment.render(&mut renderer, |_| {}).unwrap();
+    let rendered = experiment.render(&mut renderer, |_| ControlFlow::Continue(())).unwrap();
 
     assert_eq!(rendered.refractions.len(), 3);
     for measured in &rendered.refractions {

@@ -62,6 +62,7 @@
 //!
 //! * **Blocking.** Calls that submit work return at once and leave the device to it; those that wait for the device, or are busy on the
 //!   host, say so. A renderer opens no device and starts no thread of its own; building a scene uses rayon's.
+//!   [Below](#each-call) is what each does.
 //! * **Threads.** A [`Renderer`] is `Send` and `Sync`: it may move to another thread, and several may read from it. What changes it takes `&mut self`.
 //!   Its work goes to the queue that it was given, in order with the application's own.
 //! * **GPU memory.** A scene takes what [`SceneReport::device_bytes`] says, and each call that reads back as much again for a moment as it reads.
@@ -70,6 +71,36 @@
 //! * **Errors.** Every call that can fail returns an [`Error`] whose message names what is wrong and what would be right, and leaves the renderer as it
 //!   was. Nothing panics on what an application gives it, and nothing is printed. Errors that wgpu reports outside of the calls go to
 //!   the application's own handler.
+//!
+//! # Each call
+//!
+//! *Waits* is until when a call does not return; work that was submitted before counts, for a queue has one order. *Takes* is memory on the device beyond
+//! what the scene has. "All work" is everything that was submitted to the queue.
+//!
+//! | [`Renderer`]'s | needs | waits | takes |
+//! |---|---|---|---|
+//! | [`new`](Renderer::new) | – | while kernels compile and the self-test runs: up to seconds | some kB |
+//! | [`set_scene`](Renderer::set_scene) | `&mut` | for the host's preparation, kernels and the pilot: up to seconds | [`SceneReport::device_bytes`] |
+//! | [`dry_run`](Renderer::dry_run) | – | for the host's preparation | nothing |
+//! | [`emit_photons`](Renderer::emit_photons) | `&mut` | not, but after each 256 of its dispatches (of 262,144 photons at most) | nothing |
+//! | [`add_samples`](Renderer::add_samples) | `&mut` | not, but after each 256 samples | nothing |
+//! | [`refine`](Renderer::refine) | `&mut` | until its step is done: a second or two of a usual scene on two cores | about 1 MB, for the call |
+//! | [`finish_photons`](Renderer::finish_photons), [`restart`](Renderer::restart), [`restart_samples`](Renderer::restart_samples) | `&mut` | not | nothing |
+//! | [`render_to_texture`](Renderer::render_to_texture) | `&mut` | not, but for a shader when a format is new | nothing |
+//! | [`film`](Renderer::film) | `&` | for all work | 16 bytes a pixel, for the call |
+//! | [`layers`](Renderer::layers) | `&` | for all work | a copy of the layers' sums, for the call |
+//! | [`energy_map`](Renderer::energy_map) | `&` | for all work | 12 bytes a texel, for the call |
+//! | [`statistics`](Renderer::statistics) | `&` | for all work | some kB, for the call |
+//! | [`bake`](Renderer::bake) | `&mut` | until the lightmap is done: microseconds for each texel and sample on a software adapter | about 100 bytes a texel, of at most 524,288 at once, for the call |
+//! | [`save_state`](Renderer::save_state) | `&` | for all work | a copy of the largest of the buffers that it saves, for the call |
+//! | [`restore_state`](Renderer::restore_state) | `&mut` | for all work | a copy of what it restores, for the call |
+//! | [`intersect`](Renderer::intersect) | `&` | for all work | 64 bytes a ray, for the call |
+//! | [`upload_rays`](Renderer::upload_rays), [`trace_rays`](Renderer::trace_rays) | `&` | not | 48 bytes a ray, until the batch is dropped |
+//! | [`wait`](Renderer::wait) | `&` | for all work | nothing |
+//! | [`refinement`](Renderer::refinement), [`emission`](Renderer::emission), [`guide`](Renderer::guide), [`map_layout`](Renderer::map_layout), [`loop_limit`](Renderer::loop_limit) | `&` | not | nothing |
+//!
+//! Everything of [`scene`] and [`RenderState::read`] works on the host alone: reading a scene blocks for its files. No call is asynchronous: to keep a
+//! window alive, call [`Renderer::refine`] between frames, or move the renderer to a thread of its own.
 
 pub use diacaustic_scene as scene;
 pub use diacaustic_shaders::AimTarget;

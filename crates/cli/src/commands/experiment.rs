@@ -1,13 +1,13 @@
 //! `diacaustic experiment`: a sweep over a scene, as tables of pictures on one page.
 
-use std::{path::PathBuf, time::Instant};
+use std::{ops::ControlFlow, path::PathBuf, time::Instant};
 
-use diacaustic::{Renderer, RendererOptions, scene::Override};
+use diacaustic::{Renderer, scene::Override};
 use diacaustic_experiment::Experiment;
-use diacaustic_headless::OpenOptions;
 
 use crate::{
-    Error,
+    DeviceArguments, Error,
+    interruption::Interruption,
     progress::{Progress, Seconds},
     scene_arguments::parse_override,
 };
@@ -28,6 +28,10 @@ pub struct ExperimentArguments {
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse_override)]
     pub overrides: Vec<Override>,
 
+    /// The device.
+    #[command(flatten)]
+    pub device: DeviceArguments,
+
     /// Print nothing but errors
     #[arg(short, long)]
     pub quiet: bool,
@@ -36,7 +40,8 @@ pub struct ExperimentArguments {
 /// Renders the experiment and writes its page. Blocks until all is done; says on the standard error what happens.
 ///
 /// # Errors
-/// If the experiment or a scene of it cannot be read or rendered, there is no device, or a file cannot be written.
+/// If the experiment or a scene of it cannot be read or rendered, there is no device, a file cannot be written, or a signal ends the program,
+/// which then writes the page with the pictures that there are.
 pub fn run(arguments: &ExperimentArguments) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.quiet);
@@ -46,14 +51,21 @@ pub fn run(arguments: &ExperimentArguments) -> Result<(), Error> {
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from(arguments.experiment.file_stem().unwrap_or("experiment".as_ref())));
-    let gpu = progress.spin("device", || diacaustic_headless::open(&OpenOptions::default()))?;
-    let mut renderer =
-        progress.spin("kernels", || Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default()))?;
+    let gpu = progress.spin("device", || arguments.device.open())?;
+    let options = arguments.device.renderer_options();
+    let mut renderer = progress.spin("kernels", || Renderer::new(&gpu.device, &gpu.queue, &options))?;
+    let interruption = Interruption::watch().map_err(Error::Signals)?;
+    let mut ended = None;
     let rendered = experiment.render(&mut renderer, |at| {
+        if let Some(signal) = interruption.signal() {
+            ended = Some(Error::ExperimentInterrupted { signal, done: at.done, total: at.total });
+            return ControlFlow::Break(());
+        }
         progress.say(format_args!("picture {} of {}: {}", at.done + 1, at.total, at.name));
+        ControlFlow::Continue(())
     })?;
     gpu.check()?;
     rendered.write(&experiment, &folder)?;
     progress.say(format_args!("wrote {} in {}", folder.join("index.html").display(), Seconds(start.elapsed())));
-    Ok(())
+    ended.map_or(Ok(()), Err)
 }

@@ -20,7 +20,7 @@ use diacaustic_output::{Display, EnergyMapFolder, Irradiance, Picture, Tone, wri
 pub use self::arguments::RenderArguments;
 use self::{
     chart_borders::chart_borders,
-    checkpoint::{Checkpoints, resume},
+    checkpoint::{Checkpoints, read_checkpoint, resume},
     outputs::Outputs,
     pictures::{NO_LAYERS, can_hold_layers, write_pictures},
     refresh::Refresh,
@@ -55,6 +55,7 @@ fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Ses
     override_settings(&mut loaded.scene, arguments);
     let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files, frame)?;
     warn(progress, arguments, &mut loaded, &outputs);
+    let state = arguments.resume.as_deref().map(|path| Ok::<_, Error>((path, read_checkpoint(path)?))).transpose()?;
     let load = start.elapsed();
 
     let session = match kept {
@@ -66,8 +67,8 @@ fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Ses
     };
     let checkpoints = arguments.checkpoint.as_deref();
     let checkpoints = checkpoints.map(|path| Checkpoints::new(path, arguments.every, &scene_arguments.scene));
-    if let Some(path) = &arguments.resume {
-        resume(session, path)?;
+    if let Some((path, state)) = state {
+        resume(session, path, &state)?;
     }
     session.engage(Refresh::new(&outputs.pictures));
     checkpoints.iter().for_each(|checkpoints| session.engage(checkpoints.clone()));

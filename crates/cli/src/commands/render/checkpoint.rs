@@ -48,19 +48,27 @@ impl Attendant for Checkpoints {
     }
 }
 
-/// Goes on from a checkpoint.
+/// Reads a checkpoint.
 ///
 /// # Errors
-/// If it cannot be read, is of another render, or is beyond what this one asks for.
-pub(super) fn resume(session: &mut Session, path: &Path) -> Result<(), Error> {
-    let refused = |scene: &str, cause: diacaustic::Error| {
-        let of_scene = if scene.is_empty() { String::new() } else { format!(" of {scene}") };
-        Error::Resume { path: path.to_owned(), of_scene, problem: cause.to_string() }
+/// If it cannot be read, or is none.
+pub(super) fn read_checkpoint(path: &Path) -> Result<RenderState, Error> {
+    let refused = |problem: String| Error::Resume { path: path.to_owned(), of_scene: String::new(), problem };
+    let file = File::open(path).map_err(|error| refused(format!("it cannot be read: {error}")))?;
+    RenderState::read(BufReader::new(file)).map_err(|error| refused(error.to_string()))
+}
+
+/// Goes on from a checkpoint, which was read from `path`.
+///
+/// # Errors
+/// If it is of another render, or is beyond what this one asks for.
+pub(super) fn resume(session: &mut Session, path: &Path, state: &RenderState) -> Result<(), Error> {
+    let refused = |problem: String| {
+        let of_scene = if state.note.is_empty() { String::new() } else { format!(" of {}", state.note) };
+        Error::Resume { path: path.to_owned(), of_scene, problem }
     };
-    let file = File::open(path).map_err(|error| refused("", diacaustic::Error::BadState(error.to_string())))?;
-    let state = RenderState::read(BufReader::new(file)).map_err(|error| refused("", error))?;
-    session.restore(&state).map_err(|error| match error {
-        Error::Render(cause) => refused(&state.note, cause),
+    session.restore(state).map_err(|error| match error {
+        Error::Render(cause) => refused(cause.to_string()),
         other => other,
     })?;
     let (photons, samples) = (state.photons(), state.samples());
@@ -81,7 +89,7 @@ pub(super) fn resume(session: &mut Session, path: &Path) -> Result<(), Error> {
         _ => None,
     };
     if let Some(problem) = beyond {
-        return Err(refused(&state.note, diacaustic::Error::BadState(problem)));
+        return Err(refused(problem));
     }
     session.progress.say(format_args!("resumed {}: {photons} photons, {samples} samples", path.display()));
     Ok(())
