@@ -4,11 +4,13 @@
     scripts/flicker.py SCENE --region X0,Y0,X1,Y1 [--frames 48] [--set KEY=VALUE]... [--keep FOLDER]      (pip install numpy OpenEXR)
 
 Renders frames 1 to N three times with target/release/diacaustic: with the scene's seed in all of them ("fixed"), with a seed of each frame
-("per_frame"), and so with every track held at its first value ("still"), which shows the noise alone. In the region, pixels from X0 to X1 and Y0 to Y1
-without the last, it compares the variance over time, as mean over pixels, with the one that the layer `variance` states. Moving light that
-grows or fades slowly is no flicker: the variance is that of (x[t-1] - 2 x[t] + x[t+1]) / sqrt(6), which independent noise keeps. What is left of it with
-the same seed is the light that moves. Two of the frames are rendered again alone and compared byte by byte. Prints a table in Markdown; the
-status is 1 if a frame differs, or if noise and moving light together do not explain the variance with a seed of each frame to a tenth.
+("per_frame"), and so with every track held at its first value ("still"), which shows the noise alone. The region is of pixels from X0 to X1 and Y0
+to Y1, without the last. A row of the table has the standard deviation over time, as root of the mean over pixels, of direct light (the layer
+`direct`), of all light, and the one that the layer `variance` states. Light that grows or fades slowly is no flicker: the deviation is that
+of (x[t-1] - 2 x[t] + x[t+1]) / sqrt(6), which independent noise keeps. Two frames are rendered again alone and compared byte by byte.
+
+The status is 1 if a frame differs, if direct light varies with a fixed seed by more than a tenth of the noise, or if its variance with seeds
+of each frame is not that of the still scene to a tenth: choose a region whose direct light stands still.
 """
 import argparse
 import pathlib
@@ -19,10 +21,11 @@ import tomllib
 
 REPOSITORY = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
+CHANNELS = ("direct.G", "G", "variance.G")
 
 
 def render(scene, frames, output, overrides):
-    sets = [flag for override in ('output.layers=["variance"]', *overrides) for flag in ("--set", override)]
+    sets = [flag for override in ('output.layers=["direct", "variance"]', *overrides) for flag in ("--set", override)]
     command = [PROGRAM, scene, "--quiet", "--frames", f"{frames[0]}..{frames[1]}", "--output", output, *sets]
     subprocess.run(command, check=True)
 
@@ -34,24 +37,24 @@ def held(scene):
         yield f"animation.tracks.{number}.{key}={[track[key][0]] * len(track[key])}"
 
 
-def green(path, region):
-    """Radiance and its stated variance in the region."""
+def channels(path, region):
+    """The region's direct light, all light, and the variance stated of it; green."""
     import numpy
     import OpenEXR
 
     x0, y0, x1, y1 = region
     with OpenEXR.File(str(path), separate_channels=True) as file:
-        channels = file.channels()
-        return [numpy.asarray(channels[name].pixels, numpy.float64)[y0:y1, x0:x1] for name in ("G", "variance.G")]
+        found = file.channels()
+        return [numpy.asarray(found[name].pixels, numpy.float64)[y0:y1, x0:x1] for name in CHANNELS]
 
 
-def variances(folder, frames, region):
-    """Means over pixels of the variance over time, of the one stated, and of the radiance."""
+def deviations(folder, frames, region):
+    """Of direct light over time, of all light, and as stated; the mean of all light."""
     import numpy
 
-    values, stated = (numpy.array(a) for a in zip(*(green(folder / f"a.{k:04}.exr", region) for k in range(1, frames + 1))))
-    flicker = (values[:-2] - 2 * values[1:-1] + values[2:]) / numpy.sqrt(6)
-    return (flicker**2).mean(), stated.mean(), values.mean()
+    direct, light, stated = map(numpy.array, zip(*(channels(folder / f"a.{k:04}.exr", region) for k in range(1, frames + 1))))
+    over_time = lambda x: (((x[:-2] - 2 * x[1:-1] + x[2:]) / numpy.sqrt(6)) ** 2).mean() ** 0.5
+    return over_time(direct), over_time(light), stated.mean() ** 0.5, light.mean()
 
 
 def main():
@@ -68,16 +71,15 @@ def main():
         folder = pathlib.Path(arguments.keep or temporary)
         per_frame = 'animation.seed="per_frame"'
         runs = {"fixed": [], "per_frame": [per_frame], "still": [per_frame, *held(scene)]}
-        print("| seeds | standard deviation over time | stated | share of the radiance |\n|---|---:|---:|---:|")
-        measured = {}
+        print("| seeds | direct light | all light | stated | all light, share of its mean |\n|---|---:|---:|---:|---:|")
+        direct = {}
         for name, overrides in runs.items():
             (folder / name).mkdir(parents=True, exist_ok=True)
             render(scene, (1, frames), folder / name / "a.exr", [*arguments.sets, *overrides])
-            flicker, stated, mean = variances(folder / name, frames, arguments.region)
-            measured[name] = flicker
-            print(f"| {name} | {flicker ** 0.5:.2e} | {stated ** 0.5:.2e} | {flicker ** 0.5 / mean:.2%} |", flush=True)
-        ratio = measured["per_frame"] / (measured["still"] + measured["fixed"])
-        print(f"\nvariance per_frame / (still + fixed): {ratio:.3f}")
+            direct[name], light, stated, mean = deviations(folder / name, frames, arguments.region)
+            print(f"| {name} | {direct[name]:.2e} | {light:.2e} | {stated:.2e} | {light / mean:.2%} |", flush=True)
+        ratio = (direct["per_frame"] / direct["still"]) ** 2
+        print(f"\nvariance of direct light, per_frame / still: {ratio:.3f}")
         same = True
         for frame in (2, frames - 1):
             render(scene, (frame, frame), folder / "alone.exr", arguments.sets)
@@ -85,7 +87,7 @@ def main():
             alone, together = ((folder / path).read_bytes() for path in (f"alone.{name}", f"fixed/a.{name}"))
             same &= alone == together
             print(f"frame {frame} alone: {'the same bytes' if alone == together else 'DIFFERS'}")
-    return 0 if same and abs(ratio - 1) < 0.1 else 1
+    return 0 if same and abs(ratio - 1) < 0.1 and direct["fixed"] < 0.1 * direct["still"] else 1
 
 
 if __name__ == "__main__":

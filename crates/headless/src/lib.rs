@@ -9,6 +9,9 @@
 //! println!("rendering on {}", gpu.adapter_info.name);
 //! # Ok::<(), diacaustic_headless::Error>(())
 //! ```
+//!
+//! On Linux without a Wayland session, a layer of Mesa's prints `XDG_RUNTIME_DIR is invalid or not set` to the standard error while devices are listed. It means
+//! nothing here; a program that sets the environment variable `NODEVICE_SELECT` to 1 before any thread starts, or is started with it, is rid of it.
 
 use std::{
     convert::Infallible,

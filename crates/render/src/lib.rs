@@ -40,6 +40,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # A program of its own
+//!
+//! An application that has no device yet, and no way to write pictures, takes three crates: `diacaustic`, `diacaustic-headless` for the device and
+//! `diacaustic-output` for the file. This is all of it; `wgpu` and `glam` are re-exported for those who bring their own device.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use diacaustic::{Renderer, RendererOptions, Stage, scene::load_scene};
+//! use diacaustic_headless::{OpenOptions, open};
+//! use diacaustic_output::{Display, Picture, Tone, write_png};
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let scene = load_scene(Path::new("ball.toml"))?.scene;
+//!     let gpu = open(&OpenOptions::default())?;
+//!     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default())?;
+//!     renderer.set_scene(&scene)?;
+//!     while renderer.refine()?.stage != Stage::Done {}
+//!
+//!     let film = renderer.film()?;
+//!     let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
+//!     let display = Display { exposure: scene.output.exposure, tone: Tone::Filmic };
+//!     write_png(Path::new("ball.png"), &picture, &display)?;
+//!     Ok(())
+//! }
+//! ```
+//!
 //! # The calls, in their order
 //!
 //! 1. [`Renderer::new`] on a device that has [`Renderer::required_limits`]. Once for each device: it compiles kernels.

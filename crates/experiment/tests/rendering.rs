@@ -1,6 +1,6 @@
-//! What the page shows of equation 3: rays that the kernels refract lie on the curves that are plotted.
+//! What experiments render, on a device: rays that the kernels refract lie on the curves of the page, and an experiment that ends early has a page.
 
-use std::{fs, ops::ControlFlow};
+use std::{fs, ops::ControlFlow, path::Path};
 
 use diacaustic::{Renderer, RendererOptions};
 use diacaustic_experiment::Experiment;
@@ -27,16 +27,45 @@ const EXPERIMENT: &str = r#"
     id = "one"
     title = "One picture"
     columns = { label = "samples", key = "render.samples", values = [1] }
+    [[tables]]
+    id = "two"
+    title = "Two pictures"
+    columns = { label = "flux", key = "lights.0.flux", values = [5, 10] }
+    [[findings]]
+    text = "Flux matters."
+    table = "two"
+    checks = [{ figure = "energy", expects = "rises" }]
 "#;
+
+/// The experiment, and a renderer for it.
+fn set_up(folder: &Path) -> (Experiment, Renderer) {
+    fs::write(folder.join("scene.toml"), SCENE).unwrap();
+    fs::write(folder.join("refraction.toml"), EXPERIMENT).unwrap();
+    let experiment = Experiment::read(&folder.join("refraction.toml")).unwrap();
+    let gpu = open(&OpenOptions::default()).unwrap();
+    (experiment, Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default()).unwrap())
+}
+
+#[test]
+fn an_experiment_that_ends_early_judges_nothing_that_it_has_not_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let (experiment, mut renderer) = set_up(folder.path());
+    let rendered = experiment
+        .render(&mut renderer, |at| if at.done < 2 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) })
+        .unwrap();
+    assert_eq!(rendered.cells.iter().map(|cell| (cell.table, cell.column)).collect::<Vec<_>>(), [(0, 0), (1, 0)]);
+    let verdicts = rendered.judge(&experiment, &experiment.findings[0]);
+    assert!(!verdicts[0].is_measured() && !verdicts[0].holds());
+    rendered.write(&experiment, folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("index.html")).unwrap();
+    assert_eq!(page.matches(">not measured<").count(), 2, "in the overview and at the finding: {page}");
+    assert!(!page.contains(">does not hold<"), "{page}");
+}
 
 #[test]
 fn kernels_refract_as_the_curves_of_the_page_do() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
-    fs::write(folder.path().join("refraction.toml"), EXPERIMENT).unwrap();
-    let experiment = Experiment::read(&folder.path().join("refraction.toml")).unwrap();
-    let gpu = open(&OpenOptions::default()).unwrap();
-    let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default()).unwrap();
+    let (experiment, mut renderer) = set_up(folder.path());
     let rendered = experiment.render(&mut renderer, |_| ControlFlow::Continue(())).unwrap();
 
     assert_eq!(rendered.refractions.len(), 3);
