@@ -439,6 +439,11 @@ shared_structs! {
         weight: f32,
         /// Radiance that the path gathered, W/(m² sr), mean of the channels.
         radiance: f32,
+        /// Radiance that came to the first place by the path's next direction, W/(m² sr), but for what next-event estimation and the maps bring
+        /// there. Directions are drawn in proportion to the cosine, so that its mean times π is irradiance.
+        bounced: [f32; 3],
+        /// One over the distance to what was met there, 1/m; 0 for nothing, negative if the path did not go on from its first place.
+        inverse_distance: f32,
     }
     /// Sums over a pixel's samples of what they met first, and their deviations.
     struct DataLayers {

@@ -105,6 +105,8 @@ pub(crate) struct Course {
     /// Squared errors of the picture that the maps and the camera's samples make.
     map_error: f64,
     camera_error: Option<f64>,
+    /// Photons by which the irradiance cache was filled last, and its squared error.
+    cache: Option<(u64, f64)>,
     /// Samples of every pixel.
     sampled: u32,
     /// Tiles that need more samples, and how many each before the next estimate.
@@ -128,6 +130,7 @@ impl Course {
             last_look: None,
             map_error: 0.0,
             camera_error: None,
+            cache: None,
             sampled: 0,
             listed: Vec::new(),
             tile_count: 0,
@@ -140,7 +143,7 @@ impl Course {
             stage: self.stage,
             photons: self.emitted,
             samples,
-            error: self.camera_error.map(|error| (error + self.map_error).sqrt()),
+            error: self.camera_error.map(|error| (error + self.light_error()).sqrt()),
         }
     }
 
@@ -158,6 +161,21 @@ impl Course {
         if self.stage == Stage::Photons {
             self.stage = Stage::Samples;
         }
+    }
+
+    /// Squared error by the maps and the irradiance cache, which all samples share.
+    fn light_error(&self) -> f64 {
+        self.map_error + self.cache.map_or(0.0, |(_, error)| error)
+    }
+
+    /// Photons by which the irradiance cache was filled; none if it was not.
+    pub fn cache_photons(&self) -> Option<u64> {
+        self.cache.map(|(photons, _)| photons)
+    }
+
+    /// Notes that the irradiance cache was filled by so many photons, with a squared error.
+    pub fn note_cache(&mut self, photons: u64, error: f64) {
+        self.cache = Some((photons, error));
     }
 
     /// What is to be done next.
@@ -262,7 +280,7 @@ impl Course {
     pub fn note_errors(&mut self, errors: &TileErrors) {
         self.camera_error = Some(errors.mean(|tile| tile.squared_error));
         let target = self.target.powi(2);
-        let allowed = (target - self.map_error).max((1.0 - MAP_SHARES.end()) * target) as f32;
+        let allowed = (target - self.light_error()).max((1.0 - MAP_SHARES.end()) * target) as f32;
         self.tile_count = errors.tiles.len();
         self.listed.clear();
         for (tile, (error, found)) in errors.guarded().into_iter().zip(&errors.tiles).enumerate() {

@@ -73,16 +73,17 @@ impl Renderer {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         on_device.resolve(&self.gpu, &self.resolve_pass);
         let photon_rays = on_device.photons.counts(&self.gpu)?.rays;
+        let seed = on_device.scene.settings.seed;
         let probed =
-            ProbedScene { seed: on_device.scene.settings.seed, maps: &on_device.maps, groups: &on_device.groups };
+            ProbedScene { seed, maps: &on_device.maps, cache: &on_device.cache, groups: &on_device.groups };
         let group = &on_device.buffers.bind_group;
         let probe = on_device.samples.probe(&self.gpu, &mut self.camera_pass, on_device.features, group, &probed)?;
         self.on_course(|course| course.note_probe(&probe, photon_rays))
     }
 
     fn sample_tiles(&mut self, tiles: &[u32], count: u32) -> Result<(), Error> {
+        self.prepare_light()?;
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.resolve(&self.gpu, &self.resolve_pass);
         let group = &on_device.buffers.bind_group;
         let pixels = on_device.samples.add_to_tiles(&self.gpu, &self.camera_pass, group, tiles, count)?;
         on_device.sample_sum += pixels * u64::from(count);
