@@ -25,7 +25,7 @@ const MOST_NODES: usize = 512;
 /// Paths of each round that a value stands on at least, at [`USUAL_TARGET`]: those of a square of 16 pixels.
 const PATHS_OF_ROUND: f64 = 16.0;
 /// How far a value may reach, in mean distances to what lights the place (Ward, Rubinstein and Clear 1988).
-const REACH: f64 = 0.5;
+const REACH: f64 = 0.35;
 /// The same in cells of the grid.
 const REACH_CELLS: f64 = 8.0;
 /// Paths for each four pixels squared, at first and at most.

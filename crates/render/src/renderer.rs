@@ -319,11 +319,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Brings what samples read of the photons up to date: the maps' irradiance, and the irradiance cache once there are twice the photons that
-    /// it was filled by. Blocks where it fills the cache.
-    fn prepare_light(&mut self) -> Result<(), Error> {
+    /// Fills the irradiance cache by the light in the maps, if there are twice the photons by which that was done last. Blocks if it does.
+    fn fill_cache(&mut self) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.resolve(&self.gpu, &self.resolve_pass);
         let OnDevice { scene, features, buffers, maps, cache, samples, course, photon_count, .. } = on_device;
         if !cache.has_grids() || course.cache_photons().is_some_and(|before| *photon_count < 2 * before.max(1)) {
             return Ok(());
@@ -339,12 +337,21 @@ impl Renderer {
     }
 
     /// Submits `count` further samples of every pixel, lit by the photons emitted so far. Blocks after each 256 of them until they are
-    /// done, for submitted work takes memory; and before the first, where the scene has an irradiance cache, until that is filled.
+    /// done, for submitted work takes memory; and before the first, where the scene asks for an irradiance cache, until that is filled.
     ///
     /// # Errors
     /// If no scene is set or the device fails.
     pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
-        self.prepare_light()?;
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        if on_device.scene.settings.irradiance_cache == Some(true) {
+            self.fill_cache()?;
+        }
+        self.take_samples(count)
+    }
+
+    /// Submits samples of every pixel by the maps and the cache as they are.
+    fn take_samples(&mut self, count: u32) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         for number in 1..=count {
             on_device.samples.add(&self.gpu, &on_device.buffers.bind_group);

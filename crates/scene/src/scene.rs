@@ -90,8 +90,8 @@ pub struct RenderSettings {
     pub guiding: bool,
     /// Whether photons lay their flux over the part of the map that neighbouring photons leave open, and not over four texels.
     pub footprints: bool,
-    /// Whether light that bounces to receivers is measured by a few camera paths and shared by all others; if none, where `samples` are left
-    /// open and the scene allows it.
+    /// Whether light that bounces to receivers is measured by a few camera paths and shared by all others; if none, by renders that choose their
+    /// samples, where the scene allows it.
     pub irradiance_cache: Option<bool>,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,

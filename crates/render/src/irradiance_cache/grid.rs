@@ -177,3 +177,55 @@ fn mean(found: &Found) -> Node {
         reach: 0.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: Grid = Grid { first: 0, columns: 17, rows: 9, scale: 0.1, cell: 0.5 };
+
+    fn found(paths: f64, irradiance: f64) -> Found {
+        Found { paths, irradiance: [paths * irradiance; 3], inverse_distance: 2.0 * paths }
+    }
+
+    #[test]
+    fn even_light_is_even_whatever_the_paths() {
+        let seen = (0..GRID.nodes()).map(|node| found((node % 5) as f64, 3.0)).collect();
+        for node in values(&GRID, seen, 6.0).unwrap() {
+            assert!((node.irradiance[0] - 3.0).abs() < 1e-12 && (node.inverse_distance - 2.0).abs() < 1e-12, "{node:?}");
+        }
+    }
+
+    #[test]
+    fn many_paths_keep_to_their_node_and_few_ask_around() {
+        let brighter = |node: usize| if node % 17 < 8 { 1.0 } else { 5.0 };
+        let of_each = |paths: f64| (0..GRID.nodes()).map(|node| found(paths, brighter(node))).collect();
+        let own = values(&GRID, of_each(10.0), 10.0).unwrap();
+        assert!(own.iter().enumerate().all(|(node, value)| value.irradiance[1] == brighter(node)));
+        assert!(own.iter().all(|value| value.reach == 0.5));
+        let shared = values(&GRID, of_each(1.0), 10.0).unwrap();
+        assert!((1.5..4.5).contains(&shared[8].irradiance[1]), "{:?}", shared[8]);
+        assert!(shared.iter().all(|value| value.reach > 1.0), "{:?}", shared[0]);
+        // Far from the step it is not seen.
+        assert!(shared[0].irradiance[1] < 1.5 && shared[16].irradiance[1] > 4.5, "{shared:?}");
+    }
+
+    #[test]
+    fn too_few_paths_in_all_tell_nothing() {
+        let mut seen = vec![Found::default(); GRID.nodes()];
+        seen[3] = found(5.0, 1.0);
+        assert_eq!(values(&GRID, seen.clone(), 6.0), None);
+        let alone = values(&GRID, seen, 5.0).unwrap();
+        assert!(alone[3].reach < alone[GRID.nodes() - 1].reach);
+    }
+
+    #[test]
+    fn places_lie_between_their_nodes() {
+        for place in [[0.0, 0.0], [12.5, 31.0], [160.0, 80.0], [-1.0, 500.0]] {
+            let around = GRID.around(place);
+            assert!((around.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
+            let at = around.map(|(node, weight)| weight * (node % 17) as f64).iter().sum::<f64>();
+            assert!((at - f64::from(place[0]).clamp(0.0, 160.0) * 0.1).abs() < 1e-12, "{place:?}");
+        }
+    }
+}

@@ -28,7 +28,8 @@ impl Renderer {
             }
             Step::Probe => self.probe_maps(),
             Step::Sample(count) => {
-                self.add_samples(count)?;
+                self.prepare_light()?;
+                self.take_samples(count)?;
                 self.gpu.wait()?;
                 self.on_course(|course| course.note_samples(count))
             }
@@ -67,6 +68,13 @@ impl Renderer {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         note(&mut on_device.course);
         self.refinement()
+    }
+
+    /// Brings what samples read of the photons up to date: the maps' irradiance and the irradiance cache. Blocks where it fills the cache.
+    fn prepare_light(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        self.fill_cache()
     }
 
     fn probe_maps(&mut self) -> Result<Refinement, Error> {
