@@ -369,6 +369,17 @@ shared_structs! {
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
+    /// One dispatch of the pass that looks at what the maps hold.
+    struct ProbeParams {
+        /// Places to look at.
+        count: u32,
+        /// Entries of irradiance of each texel, of which the first is of all light.
+        entries: u32,
+        /// Unused.
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+    }
     /// One dispatch of the pass that estimates errors.
     struct ErrorParams {
         /// Width of the picture, pixels.

@@ -1,8 +1,7 @@
 //! Phase 2: samples of the picture.
 
-use diacaustic_scene::{LightGroups, Scene};
+use diacaustic_scene::Scene;
 use diacaustic_shaders::{CAMERA, CameraParams, PathParams, Sighting, TILE_SIZE};
-use glam::Vec3;
 
 use crate::{
     Error, Film, LayerImage,
@@ -33,11 +32,6 @@ const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower wid
 const HALVES: Purpose =
     Purpose { what: "the first samples of the picture's pixels", remedy: "lower width or height, or state samples" };
 const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
-/// Paths along each side of the picture, and samples of each, that tell how much the light in the maps changes.
-const PROBE_SIDE: u32 = 128;
-const PROBE_SAMPLES: u32 = 4;
-/// The stream of these paths' seeds.
-const PROBE_SEED_STREAM: u32 = 6;
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
 
@@ -156,47 +150,6 @@ impl Samples {
         gpu.zeroed(HALVES, 0)
     }
 
-    /// A few samples of a small picture, by the maps as they are: always the same paths, so that two probes differ by what has changed in
-    /// the maps. Blocks.
-    pub fn probe(
-        &self,
-        gpu: &Gpu,
-        pass: &mut CameraPass,
-        features: Features,
-        scene_group: &wgpu::BindGroup,
-        scene: &ProbedScene,
-    ) -> Result<Probe, Error> {
-        let camera = CameraParams { width: PROBE_SIDE, height: PROBE_SIDE, ..self.camera };
-        let probing = PathParams { seed: combine(scene.seed, PROBE_SEED_STREAM), ..self.paths };
-        let paths = u64::from(PROBE_SIDE * PROBE_SIDE);
-        let film = self.blank_film(gpu, paths)?;
-        let halves = gpu.zeroed(HALVES, 16 * paths)?;
-        let sightings = &gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        let layers = &LayerSums::new(gpu, &[], scene.groups, paths)?;
-        let outputs = Outputs { maps: scene.maps, film: &film, layers, sightings, cache: &scene.cache.buffer };
-        let outputs = pass.outputs_group(gpu, &outputs, &halves);
-        let pipeline = pass.pipelines.get(gpu, features.for_probe());
-        self.write_params(gpu, &camera, &probing);
-        let tiles = PROBE_SIDE / TILE_SIZE;
-        for _ in 0..PROBE_SAMPLES {
-            gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
-        }
-        let sums: Vec<[f32; 4]> = gpu.read(&film, 1..1 + paths)?;
-        let halves: Vec<[f32; 4]> = gpu.read(&halves, 0..paths)?;
-        let mean = |sums: &[f32; 4]| Vec3::from_slice(sums) / sums[3].max(1.0);
-        let other = |(all, half): (&[f32; 4], &[f32; 4])| mean(&std::array::from_fn(|k| all[k] - half[k]));
-        let scale = f64::from(self.camera.width) * f64::from(self.camera.height) / paths as f64;
-        Ok(Probe {
-            radiance: sums.iter().map(mean).collect(),
-            deviation: halves
-                .iter()
-                .zip(sums.iter().zip(&halves).map(other))
-                .map(|(h, o)| 0.5 * (mean(h) - o))
-                .collect(),
-            rays: ray_count(gpu, &film)? as f64 * scale,
-        })
-    }
-
     /// What samples accumulate in, by name.
     pub fn accumulated(&self) -> [(&'static str, &wgpu::Buffer); 5] {
         let LayerSums { light, data, groups, .. } = &self.layers;
@@ -290,25 +243,6 @@ impl Samples {
     pub fn rays(&self, gpu: &Gpu) -> Result<u64, Error> {
         ray_count(gpu, &self.film)
     }
-}
-
-/// What the samples of a probe see by.
-pub(crate) struct ProbedScene<'s> {
-    pub seed: u32,
-    pub maps: &'s EnergyMaps,
-    pub cache: &'s IrradianceCache,
-    pub groups: &'s LightGroups,
-}
-
-/// A few samples of a small picture.
-#[derive(Clone, Debug)]
-pub(crate) struct Probe {
-    /// Mean radiance of each pixel, W/(m² sr).
-    pub radiance: Vec<Vec3>,
-    /// By which, as a standard deviation, each may differ from what more samples would give.
-    pub deviation: Vec<Vec3>,
-    /// Rays that as many samples of the whole picture take.
-    pub rays: f64,
 }
 
 /// Reads the number of rays traced for a film. Blocks.

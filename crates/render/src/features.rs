@@ -111,11 +111,6 @@ impl Features {
         Self { light_layers: false, data_layers: false, light_groups: 0, ..sightings }
     }
 
-    /// The same for camera paths that probe what has changed.
-    pub fn for_probe(self) -> Self {
-        Self { light_layers: false, data_layers: false, halves: true, ..self }
-    }
-
     /// The same for paths that begin at a lightmap's texels.
     pub fn for_baking(self) -> Self {
         Self { sightings: false, irradiance_cache: false, light_layers: true, data_layers: false, ..self }

@@ -101,6 +101,7 @@ mod material_records;
 mod paper;
 mod photon_pass;
 mod pilot;
+mod probe_pass;
 mod random;
 mod ray_query;
 mod refine;

@@ -5,8 +5,8 @@ mod states;
 
 use std::{ops::Range, time::Instant};
 
-use diacaustic_scene::{LightGroups, Scene};
-use diacaustic_shaders::QueryHit;
+use diacaustic_scene::Scene;
+use diacaustic_shaders::{QueryHit, Sighting};
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
@@ -25,6 +25,7 @@ use crate::{
     map_placement::{map_sizes, place_maps, texel_budget},
     map_sums::{EnergyMaps, ResolvePass, bytes_of_texel, most_texels},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
+    probe_pass::ProbePass,
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     refine::Course,
     scene_buffers::{self, SceneBuffers},
@@ -68,6 +69,7 @@ pub struct Renderer {
     photon_pass: PhotonPass,
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
+    probe_pass: ProbePass,
     error_pass: ErrorPass,
     bake_pass: BakePass,
     display_pass: DisplayPass,
@@ -81,13 +83,14 @@ pub struct Renderer {
 #[derive(Debug)]
 struct OnDevice {
     scene: Scene,
-    groups: LightGroups,
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
     features: Features,
     buffers: SceneBuffers,
     maps: EnergyMaps,
     cache: IrradianceCache,
+    /// What camera paths saw of the maps before there were photons.
+    sightings: Vec<Sighting>,
     photons: Photons,
     samples: Samples,
     course: Course,
@@ -145,6 +148,7 @@ impl Renderer {
             photon_pass: PhotonPass::new(gpu, &scene_layout),
             resolve_pass: ResolvePass::new(gpu),
             camera_pass: CameraPass::new(gpu, &scene_layout),
+            probe_pass: ProbePass::new(gpu, &scene_layout),
             error_pass: ErrorPass::new(gpu),
             bake_pass: BakePass::new(gpu, &scene_layout),
             display_pass: DisplayPass::new(gpu),
@@ -209,10 +213,7 @@ impl Renderer {
         let of_photons: Vec<_> =
             kinds_of_light(scene).into_iter().map(|kind| features.for_photons_of(kind, &scene.settings)).collect();
         // Nearly every scene has sightings; what is missing is compiled when it is asked for.
-        let mut of_paths = vec![features, features.with_sightings()];
-        if scene.settings.photons.is_none() {
-            of_paths.push(features.for_probe());
-        }
+        let of_paths = [features, features.with_sightings()];
         let Self { gpu, photon_pass, camera_pass, .. } = self;
         let (photons, paths) = rayon::join(
             || photon_pass.pipelines.prepare(gpu, &of_photons),
@@ -250,7 +251,8 @@ impl Renderer {
         let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
         let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
         let is_open = host.maps.iter().flatten().any(|plan| !plan.is_stated);
-        if !self.is_dry && photons.can_emit() && (scene.settings.guiding || is_open) {
+        let needs_sightings = scene.settings.guiding || is_open || scene.settings.photons.is_none();
+        if !self.is_dry && photons.can_emit() && needs_sightings {
             let start = Instant::now();
             let group = &buffers.bind_group;
             let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), 1)?;
@@ -285,12 +287,12 @@ impl Renderer {
             photons,
             samples,
             scene: scene.clone(),
-            groups: host.lights.groups.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
             features: host.features,
             buffers,
             maps,
             cache,
+            sightings: sightings.list,
             photon_count: 0,
             sample_count: 0,
             sample_sum: 0,

@@ -3,7 +3,6 @@
 use super::Renderer;
 use crate::{
     Error, Refinement,
-    camera_pass::ProbedScene,
     refine::{Course, Step},
 };
 
@@ -80,13 +79,10 @@ impl Renderer {
     fn probe_maps(&mut self) -> Result<Refinement, Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         on_device.resolve(&self.gpu, &self.resolve_pass);
-        let photon_rays = on_device.photons.counts(&self.gpu)?.rays;
-        let seed = on_device.scene.settings.seed;
-        let probed =
-            ProbedScene { seed, maps: &on_device.maps, cache: &on_device.cache, groups: &on_device.groups };
-        let group = &on_device.buffers.bind_group;
-        let probe = on_device.samples.probe(&self.gpu, &mut self.camera_pass, on_device.features, group, &probed)?;
-        self.on_course(|course| course.note_probe(&probe, photon_rays))
+        let (group, sightings) = (&on_device.buffers.bind_group, &on_device.sightings);
+        let of_maps = self.probe_pass.run(&self.gpu, group, &on_device.maps, sightings)?;
+        on_device.course.note_probe(sightings, of_maps);
+        self.refinement()
     }
 
     fn sample_tiles(&mut self, tiles: &[u32], count: u32) -> Result<(), Error> {
