@@ -49,6 +49,7 @@ mod folder;
 mod gltf;
 mod layer;
 mod light;
+mod irradiance_cache;
 mod light_groups;
 mod material;
 mod media;
