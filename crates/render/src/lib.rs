@@ -110,8 +110,8 @@
 //! | [`set_scene`](Renderer::set_scene) | `&mut` | for the host's preparation, kernels and the pilot: up to seconds | [`SceneReport::device_bytes`] |
 //! | [`dry_run`](Renderer::dry_run) | – | for the host's preparation | nothing |
 //! | [`emit_photons`](Renderer::emit_photons) | `&mut` | not, but after each 256 of its dispatches (of 262,144 photons at most) | nothing |
-//! | [`add_samples`](Renderer::add_samples) | `&mut` | not, but after each 256 samples | nothing |
-//! | [`refine`](Renderer::refine) | `&mut` | until its step is done: a second or two of a usual scene on two cores | about 1 MB, for the call |
+//! | [`add_samples`](Renderer::add_samples) | `&mut` | not, but after each 256 samples, and while an irradiance cache fills that the scene asks for | some MB while it fills |
+//! | [`refine`](Renderer::refine) | `&mut` | until its step is done: a second or two of a usual scene on two cores | some MB, for the call |
 //! | [`finish_photons`](Renderer::finish_photons), [`restart`](Renderer::restart), [`restart_samples`](Renderer::restart_samples) | `&mut` | not | nothing |
 //! | [`render_to_texture`](Renderer::render_to_texture) | `&mut` | not, but for a shader when a format is new | nothing |
 //! | [`film`](Renderer::film) | `&` | for all work | 16 bytes a pixel, for the call |
