@@ -9,8 +9,8 @@ to Y1, without the last. A row of the table has the standard deviation over time
 `direct`), of all light, and the one that the layer `variance` states. Light that grows or fades slowly is no flicker: the deviation is that
 of (x[t-1] - 2 x[t] + x[t+1]) / sqrt(6), which independent noise keeps. Two frames are rendered again alone and compared byte by byte.
 
-The status is 1 if a frame differs, if direct light varies with a fixed seed by more than a tenth of the noise, or if its variance with seeds
-of each frame is not that of the still scene to a tenth: choose a region whose direct light stands still.
+The status is 1 if a frame differs, if direct light varies with a fixed seed by more than with seeds of each frame, or if its variance with these
+is not that of the still scene to a tenth: choose a region whose direct light stands still.
 """
 import argparse
 import pathlib
@@ -87,7 +87,7 @@ def main():
             alone, together = ((folder / path).read_bytes() for path in (f"alone.{name}", f"fixed/a.{name}"))
             same &= alone == together
             print(f"frame {frame} alone: {'the same bytes' if alone == together else 'DIFFERS'}")
-    return 0 if same and abs(ratio - 1) < 0.1 and direct["fixed"] < 0.1 * direct["still"] else 1
+    return 0 if same and abs(ratio - 1) < 0.1 and direct["fixed"] < direct["per_frame"] else 1
 
 
 if __name__ == "__main__":

@@ -109,7 +109,7 @@ impl Viewer {
         ui.add(egui::Slider::new(&mut controls.height, 1.0..=4.0).text("light's height, m"));
         ui.add(egui::Slider::new(&mut controls.map_size, 16..=1024).logarithmic(true).text("map, texels"));
         ui.add(egui::Slider::new(&mut self.exposure, -2.0..=6.0).text("exposure, stops"));
-        ui.label(format!("{} photons, {} samples", self.photons, self.samples));
+        ui.label(format!("{} photons, samples: {}", self.photons, self.samples));
         if let Some(failure) = &self.failure {
             ui.colored_label(egui::Color32::LIGHT_RED, failure.to_string());
         }
