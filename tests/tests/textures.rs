@@ -255,5 +255,5 @@ fn a_surface_with_a_picture_shines_as_its_mean() {
     let irradiance = 0.5 * 0.15 * 1000.0 * 0.04 / 100.0;
     let expected = irradiance / std::f64::consts::PI * DVec3::new(1.0, 2.0, 3.0);
     assert!((found / expected - 1.0).abs().max_element() < 5e-3, "{found}, known {expected}");
-    assert_eq!(scene.materials[panel].opacity_at(Vec2::ZERO), 0.5);
+    assert_eq!(scene.materials[panel].opacity_at(Vec2::ZERO, 1.0), 0.5);
 }

@@ -109,6 +109,7 @@ mod scene_buffers;
 mod self_test;
 mod spectra_records;
 mod statistics;
+mod tangent_records;
 mod texture_records;
 mod tile_choice;
 mod vertex_color_records;

@@ -190,8 +190,8 @@ impl Reader<'_, '_> {
         }
         let user = node_place(self.root, node);
         let mesh_place = place("meshes", mesh, None);
-        let uv_set_of = |material| self.materials.uv_set(material, &mesh_place);
-        let read = self.meshes.read(mesh, pose, &user, uv_set_of)?.map(|slotted| self.with_materials(slotted));
+        let needs_of = |material| self.materials.needs(material, &mesh_place);
+        let read = self.meshes.read(mesh, pose, &user, needs_of)?.map(|slotted| self.with_materials(slotted));
         let read = read.transpose()?;
         if pose.is_plain() {
             self.shared.insert(mesh, read.clone());

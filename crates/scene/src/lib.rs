@@ -70,6 +70,7 @@ mod spectrum;
 mod stl;
 mod studio;
 mod substances;
+mod tangents;
 mod texture;
 mod texture_image;
 mod validate;
@@ -83,7 +84,7 @@ pub use gltf::{GltfCamera, GltfFile, GltfObject, GltfOptions, load_gltf, parse_g
 pub use layer::Layer;
 pub use light::{Light, LightKind};
 pub use light_groups::{BACKGROUND_GROUP, DEFAULT_LIGHT_GROUP, LightGroups, MOST_LIGHT_GROUPS};
-pub use material::{GLOSSY, Material, MaterialKind, PLASTIC_REFLECTANCE, SMOOTH};
+pub use material::{Blend, GLOSSY, Material, MaterialKind, PLASTIC_REFLECTANCE, SMOOTH};
 pub use mesh::{Chart, Mesh};
 pub use mesh_file::MeshFile;
 pub use mesh_options::MeshOptions;

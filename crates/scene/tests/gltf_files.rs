@@ -244,7 +244,7 @@ fn closed_meshes_of_glass_are_volumes() {
     assert_eq!(dispersion, Dispersion::Abbe(50.0));
     let ln2 = std::f32::consts::LN_2;
     assert!(absorption.abs_diff_eq(Vec3::new(0.0, 0.5 * ln2, ln2), 1e-6), "{absorption}");
-    let thin = MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0) };
+    let thin = MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0), roughness: 0.0 };
     assert_eq!(material_kind(&glass(json!({ "thicknessFactor": 0 }))), thin);
     let mut open = thick.clone();
     open.json["accessors"][1]["count"] = json!(9);

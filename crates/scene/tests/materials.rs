@@ -75,7 +75,7 @@ fn every_type_is_read_with_all_keys() {
         }
     );
     let thin_walled = "type = 'thin_walled'\nior = 1.4\ntint = [0.2, 0.4, 0.6]";
-    assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color });
+    assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color, roughness: 0.0 });
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn omitted_keys_have_defaults() {
                 priority: 0,
             },
         ),
-        ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }),
+        ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 }),
         ("type = 'coated'\nalbedo = 1", MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 }),
         (
             "type = 'metallic_roughness'",
@@ -135,7 +135,7 @@ fn names_stand_for_measured_data() {
     );
     assert_eq!(
         material("type = 'thin_walled'\nsubstance = 'amber'").kind,
-        MaterialKind::ThinWalled { ior: amber.ior, tint: Vec3::ONE }
+        MaterialKind::ThinWalled { ior: amber.ior, tint: Vec3::ONE, roughness: 0.0 }
     );
     for known in METALS {
         let read = material(&format!("type = 'conductor'\nmetal = '{}'", known.name)).kind;

@@ -67,7 +67,7 @@ fn pbr_keys_make_pbr_materials() {
 #[test]
 fn glass_is_thin_where_the_mesh_is_open_and_opacity_is_what_d_says() {
     let (sheet, said) = material("d 0.1\nNi 1.4\nKd 1 0.5 1\n");
-    assert_eq!(sheet.kind, MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0) });
+    assert_eq!(sheet.kind, MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0), roughness: 0.0 });
     assert!(said.contains("is glass on a surface that is not closed"), "{said}");
     // Some exporters write Tr the other way round, beside a right d.
     assert!(matches!(material("d 1\nTr 1\n").0.kind, MaterialKind::Diffuse { .. }));

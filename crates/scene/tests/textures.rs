@@ -637,7 +637,7 @@ fn code_error(kind: MaterialKind, change: impl FnOnce(&mut Material)) -> String 
 fn pictures_that_a_kind_does_not_have_are_refused() {
     let diffuse = || MaterialKind::Diffuse { albedo: Vec3::ONE };
     let conductor = || MaterialKind::Conductor { eta: Vec3::ONE, k: Vec3::ONE, roughness: 0.5 };
-    let glass = || MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
+    let glass = || MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 };
     let mirror = || MaterialKind::Mirror { reflectance: Vec3::ONE };
     let dielectric = || MaterialKind::Dielectric {
         ior: 1.5,
