@@ -6,6 +6,7 @@ mod accessors;
 mod animations;
 mod buffers;
 mod container;
+mod curves;
 mod fault;
 mod instances;
 mod lights;
@@ -14,6 +15,7 @@ mod meshes;
 mod meshopt;
 mod nodes;
 mod options;
+mod pointers;
 mod pose;
 mod primitives;
 mod textures;
@@ -94,18 +96,20 @@ pub fn parse_gltf(bytes: &[u8], path: &Path, options: &GltfOptions) -> std::resu
 
 fn read(bytes: &[u8], path: &Path, folder: &Folder, options: &GltfOptions) -> Result<GltfFile> {
     let container = container::split(bytes)?;
-    let root = container::parse(container.json)?;
+    let (root, pointers) = container::parse(container.json)?;
     let unsupported = container::check_extensions(&root)?;
     let buffers = Buffers::read(&root, container.binary, folder)?;
-    let textures = TextureReader::new(&root, &buffers, folder);
+    let (posed, warnings) = pointers.posed(&root, &buffers, options)?.unzip();
+    let root = posed.as_ref().unwrap_or(&root);
+    let textures = TextureReader::new(root, &buffers, folder);
     let mut reader = Reader {
-        root: &root,
-        meshes: MeshReader::new(&root, &buffers, variants::variant(&root, options.variant.as_deref())?),
-        materials: MaterialReader::new(&root, textures),
-        nodes: Nodes::read(&root, motions(&root, &buffers, options)?)?,
+        root,
+        meshes: MeshReader::new(root, &buffers, variants::variant(root, options.variant.as_deref())?),
+        materials: MaterialReader::new(root, textures),
+        nodes: Nodes::read(root, motions(root, &buffers, &pointers, options)?)?,
         shared: HashMap::new(),
         triangles_left: MOST_TRIANGLES,
-        warnings: Vec::new(),
+        warnings: warnings.unwrap_or_default(),
         file: GltfFile::default(),
     };
     reader.read_nodes()?;
