@@ -113,7 +113,8 @@ fn photons_divide_as_in_the_reference() {
         photons: 0..1 << 17,
     };
     let ledger = trace(&job).ledger;
-    let expected = [ledger.deposited, ledger.direct, ledger.absorbed, ledger.escaped].map(|sum| sum.y / f64::from(1 << 17));
+    let expected =
+        [ledger.deposited, ledger.direct, ledger.absorbed, ledger.escaped].map(|sum| sum.y / f64::from(1 << 17));
     // What is direct, absorbed and so on depends on the aim, but not what casters send on.
     let (share, wanted) = (found[0], expected[0]);
     assert!((share / wanted - 1.0).abs() < 0.02, "deposited {share} W, reference {wanted} W; {found:?} {expected:?}");

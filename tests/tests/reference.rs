@@ -303,7 +303,8 @@ fn a_mask_passes_light_where_it_has_holes() {
     pane.opacity_cutoff = Some(0.5);
     assert_alike(&scene, 5e-3);
     // The same holes by the opacity of vertices: half of the pane.
-    pane.textures.opacity = None;
+    let index = scene.materials.iter().position(|material| material.name == "pane").expect("the pane's material");
+    scene.materials[index].textures.opacity = None;
     let pane = scene.objects.iter_mut().find(|object| object.name == "rectangle 2").expect("the pane");
     std::sync::Arc::make_mut(&mut pane.mesh).opacities = vec![1.0, 0.0, 0.0, 1.0];
     assert_alike(&scene, 5e-3);

@@ -286,7 +286,10 @@ fn opacity_at_vertices_thins_the_surface() {
             let found = mean(&film, column..column + 1, 0..16).x;
             let expected = if cutoff.is_some() { f64::from(u8::from(s > 0.5)) } else { s };
             let is_edge = cutoff.is_some() && (15..17).contains(&column);
-            assert!(is_edge || (found - expected).abs() < 0.02, "{cutoff:?}, column {column}: {found}, known {expected}");
+            assert!(
+                is_edge || (found - expected).abs() < 0.02,
+                "{cutoff:?}, column {column}: {found}, known {expected}"
+            );
         }
     }
 }

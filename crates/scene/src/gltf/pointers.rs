@@ -179,20 +179,26 @@ fn value(curves: &CurveReader<'_, '_>, pointer: &str, count: usize, range: [f32;
     }
 }
 
-/// Sets a value at a pointer; objects on the way to it that the file leaves out are made. False if there is no such place.
+/// Sets a value at a pointer; objects on the way to it that an entry of a list leaves out are made. False if there is no such place.
 fn set(document: &mut Value, pointer: &str, value: Value) -> bool {
     let Some((way, key)) = pointer.trim_start_matches('/').rsplit_once('/') else { return false };
     let mut place = document;
+    let mut is_in_entry = false;
     for segment in way.split('/') {
         place = match place {
             Value::Array(list) => {
+                is_in_entry = true;
                 let Some(entry) = segment.parse().ok().and_then(|index: usize| list.get_mut(index)) else {
                     return false;
                 };
                 entry
             }
             // A picture that a material does not have cannot be moved.
-            Value::Object(object) if segment.ends_with("Texture") && !object.contains_key(segment) => return false,
+            Value::Object(object)
+                if !object.contains_key(segment) && (!is_in_entry || segment.ends_with("Texture")) =>
+            {
+                return false;
+            }
             Value::Object(object) => object.entry(segment).or_insert_with(|| Value::Object(Map::new())),
             _ => return false,
         };
@@ -227,7 +233,9 @@ mod tests {
         assert!(set(&mut document, "/materials/0/extensions/KHR_materials_ior/ior", json!(1.4)));
         assert_eq!(document["materials"][0]["extensions"]["KHR_materials_ior"]["ior"], 1.4);
         assert!(set(&mut document, "/nodes/1/scale", json!([1, 1, 1])));
-        for nowhere in ["/nodes/0/scale", "/nodes/2/scale", "/materials/0/normalTexture/scale", "/materials/x/ior"] {
+        for nowhere in
+            ["/nodes/0/scale", "/nodes/2/scale", "/materials/0/normalTexture/scale", "/materials/x/ior", "/cameras/0/a"]
+        {
             assert!(!set(&mut document, nowhere, json!(1)), "{nowhere}");
         }
     }
