@@ -1,5 +1,7 @@
 //! KHR_animation_pointer: animations of numbers anywhere in the file, which are set in its JSON before that is read.
 
+use std::collections::BTreeMap;
+
 use gltf_json::{Root, accessor::Type};
 use serde_json::{Map, Value, json};
 
@@ -63,13 +65,8 @@ const TRANSFORMS: [(&str, usize, [f32; 2]); 3] = [
 pub(super) struct Pointers {
     /// The file's JSON; null without such channels.
     document: Value,
-    channels: Vec<Channel>,
-}
-
-struct Channel {
-    animation: usize,
-    channel: usize,
-    pointer: String,
+    /// The pointers, by the numbers of their animations and channels.
+    channels: BTreeMap<(usize, usize), String>,
 }
 
 impl Pointers {
@@ -77,7 +74,7 @@ impl Pointers {
     pub(super) fn take(json: &[u8]) -> Option<(Self, Vec<u8>)> {
         let text = std::str::from_utf8(json).ok().filter(|text| text.contains(EXTENSION))?;
         let mut document: Value = serde_json::from_str(text).ok()?;
-        let mut channels = Vec::new();
+        let mut channels = BTreeMap::new();
         let animations = document.get_mut("animations").and_then(Value::as_array_mut);
         for (animation, entry) in animations.into_iter().flatten().enumerate() {
             let list = entry.get_mut("channels").and_then(Value::as_array_mut);
@@ -86,7 +83,7 @@ impl Pointers {
                     continue;
                 };
                 let pointer = target["extensions"][EXTENSION]["pointer"].as_str().unwrap_or_default().to_owned();
-                channels.push(Channel { animation, channel, pointer });
+                channels.insert((animation, channel), pointer);
                 *target = json!({ "node": 0, "path": "pointer" });
             }
         }
@@ -96,7 +93,7 @@ impl Pointers {
 
     /// Whether a channel has a pointer for a target.
     pub(super) fn has(&self, animation: usize, channel: usize) -> bool {
-        self.channels.iter().any(|found| (found.animation, found.channel) == (animation, channel))
+        self.channels.contains_key(&(animation, channel))
     }
 
     /// The file's lists with what pointers set at the time that the options name, with what they cannot set; none at rest.
@@ -114,22 +111,23 @@ impl Pointers {
         let mut warnings = Vec::new();
         let mut keys_left = KeysLeft::all();
         let animation_place = place("animations", index, animation.name.as_deref());
-        for channel in self.channels.iter().filter(|channel| channel.animation == index) {
-            let place = format!("{animation_place}.channels[{}]", channel.channel);
-            let pointer = shortened(&channel.pointer);
-            let Some((count, range)) = property(&channel.pointer) else {
+        for ((_, channel), pointer) in self.channels.range((index, 0)..(index + 1, 0)) {
+            let place = format!("{animation_place}.channels[{channel}]");
+            let Some((count, range)) = property(pointer) else {
+                let pointer = shortened(pointer);
                 warnings.push(Fault::new(
                     place,
                     format!("animates {pointer:?}, which is not supported; it stays as it is"),
                 ));
                 continue;
             };
-            let source = entry(&animation.channels, "channels", channel.channel, &place)?;
+            let source = entry(&animation.channels, "channels", *channel, &place)?;
             let sampler = entry(&animation.samplers, "samplers", source.sampler.value(), &place)?;
             keys_left.take(root, sampler, &place)?;
             let curves = CurveReader { root, buffers, sampler, place: &place };
-            let numbers = value(&curves, &channel.pointer, count, range, time)?;
-            if !set(&mut document, &channel.pointer, numbers) {
+            let numbers = value(&curves, pointer, count, range, time)?;
+            if !set(&mut document, pointer, numbers) {
+                let pointer = shortened(pointer);
                 warnings.push(Fault::new(
                     place,
                     format!("animates {pointer:?}, which the file does not have or which is fixed"),
