@@ -22,7 +22,7 @@ mod textures;
 mod variants;
 
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeSet, HashMap, HashSet},
     fs,
     path::Path,
     sync::Arc,
@@ -37,7 +37,7 @@ use self::{
     fault::{Fault, Result, place, shortened},
     instances::read_instances,
     lights::{read_camera, read_light},
-    materials::MaterialReader,
+    materials::{MaterialReader, is_whole_on},
     meshes::{MOST_TRIANGLES, MeshReader, SlottedMesh},
     nodes::{Nodes, node_place, single},
     pose::Pose,
@@ -219,8 +219,26 @@ impl Reader<'_, '_> {
         Ok((Arc::new(mesh), materials))
     }
 
+    /// Leaves out what materials are in part nowhere on the objects that use them.
+    fn drop_hidden_rests(&mut self) {
+        let materials = &mut self.materials.materials;
+        let mut shows_rest = vec![false; materials.len()];
+        let mut seen = HashSet::new();
+        for object in &self.file.objects {
+            for (slot, &index) in object.materials.iter().enumerate() {
+                let Some(blend) = materials[index].blend.as_ref().filter(|_| !shows_rest[index]) else { continue };
+                let is_new = seen.insert((Arc::as_ptr(&object.mesh), slot, index));
+                shows_rest[index] = is_new && !is_whole_on(blend, &object.mesh, slot);
+            }
+        }
+        for (material, shows_rest) in materials.iter_mut().zip(shows_rest) {
+            material.blend = material.blend.take().filter(|_| shows_rest);
+        }
+    }
+
     fn finish(mut self, unsupported: &[&str], path: &Path) -> GltfFile {
         number_names(&mut self.file.lights);
+        self.drop_hidden_rests();
         let mut faults = self.warnings;
         faults.extend(self.meshes.warnings);
         faults.extend(self.materials.warnings);
@@ -242,7 +260,7 @@ impl Reader<'_, '_> {
 /// Makes the names of lights differ.
 fn number_names(lights: &mut [Light]) {
     let mut counts = HashMap::<String, usize>::new();
-    let mut taken: std::collections::HashSet<_> = lights.iter().map(|light| light.name.clone()).collect();
+    let mut taken: HashSet<_> = lights.iter().map(|light| light.name.clone()).collect();
     let mut is_first: HashMap<String, bool> = HashMap::new();
     for light in lights {
         let base = light.name.clone();

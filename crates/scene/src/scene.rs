@@ -108,6 +108,9 @@ pub struct RenderSettings {
     pub guiding: bool,
     /// Whether photons lay their flux over the part of the map that neighbouring photons leave open, and not over four texels.
     pub footprints: bool,
+    /// Whether light that bounces to receivers is measured by a few camera paths and shared by all others; if none, by renders that choose their
+    /// samples, where the scene allows it.
+    pub irradiance_cache: Option<bool>,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// Memory for the sums of energy maps whose size is left open, MiB; the renderer's choice if none.
@@ -167,6 +170,7 @@ impl Default for RenderSettings {
             max_bounces: 8,
             guiding: true,
             footprints: false,
+            irradiance_cache: None,
             map_size: None,
             map_budget: None,
             filter: PixelFilter::default(),

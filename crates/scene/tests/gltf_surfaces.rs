@@ -201,6 +201,22 @@ fn pictures_of_glass_and_metal_are_mixed_texel_by_texel() {
 }
 
 #[test]
+fn a_rest_that_no_surface_shows_is_left_out() {
+    let material = transmissive(1.0, 0.0, false);
+    let texels =
+        [[255, 0, 0, 255], [255, 0, 0, 255], [255, 0, 0, 255], [255, 0, 0, 255], [0, 0, 0, 255], [0, 0, 0, 255]];
+    for (columns, is_blended) in [(2.0, false), (5.0, true)] {
+        let mut material = material.clone();
+        material["extensions"]["KHR_materials_transmission"]["transmissionTexture"] = json!({ "index": 0 });
+        let mut builder = triangle(material);
+        builder.add_picture(&png_of(6, &texels));
+        let uvs = builder.floats("VEC2", &[0.0, 0.0, columns / 6.0, 0.0, 0.0, 1.0]);
+        add_attribute(&mut builder, "TEXCOORD_0", uvs);
+        assert_eq!(parse(&builder).materials[0].blend.is_some(), is_blended, "{columns}");
+    }
+}
+
+#[test]
 fn volumes_of_glass_in_part_have_a_rest_as_well() {
     let mut material = transmissive(0.5, 0.0, false);
     material["extensions"]["KHR_materials_volume"] = json!({ "thicknessFactor": 1 });

@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use glam::Vec3;
 use gltf_json::{Root, material::AlphaMode, validation::Checked};
 
+pub(super) use self::parts::is_whole_on;
 use self::{
     layers::Layers,
     numbers::{Glass, Numbers, absorption, priority, share},

@@ -6,7 +6,12 @@ use glam::Vec2;
 use half::f16;
 
 use super::pictures::{METALLIC, Pictures};
-use crate::{Texture, TextureFilter, TextureImage};
+use crate::{Blend, Mesh, Texture, TextureFilter, TextureImage};
+
+/// A share that is taken for 1, for pictures are rounded.
+const WHOLE: f32 = 0.998;
+/// How often each texel of a picture is looked at, on average.
+const MOST_LOOKS: usize = 8;
 
 /// Shares of a surface: glTF mixes metal with what is none, and of that glass with what is opaque.
 #[derive(Clone)]
@@ -90,4 +95,34 @@ fn picture_of(like: &Texture, number_at: impl Fn(Vec2) -> f32) -> Texture {
     let image =
         TextureImage::new(width, height, texels).unwrap_or_else(|_| unreachable!("as large as a picture, and finite"));
     Texture { image: Arc::new(image), channel: 0, wrap: like.wrap, filter: TextureFilter::Linear, ..like.clone() }
+}
+
+/// Whether a blend's picture is 1 wherever a slot of a mesh shows it: pictures often serve several materials, of which each shows a part.
+pub(in super::super) fn is_whole_on(blend: &Blend, mesh: &Mesh, slot: usize) -> bool {
+    let Some(texture) = &blend.texture else { return blend.share >= 1.0 };
+    let (width, height) = (texture.image.width() as usize, texture.image.height() as usize);
+    let size = Vec2::new(width as f32, height as f32);
+    let is_of_slot = |triangle: usize| mesh.triangle_slots.get(triangle).copied().unwrap_or(0) as usize == slot;
+    // Boxes around triangles overlap; a file whose boxes cover its picture many times is not looked at further.
+    let mut texels_left = MOST_LOOKS * width * height;
+    mesh.triangles.iter().enumerate().filter(|(triangle, _)| is_of_slot(*triangle)).all(|(_, corners)| {
+        let places = corners.map(|vertex| {
+            let uv = mesh.uvs.get(vertex as usize).copied().unwrap_or_default();
+            let place = texture.picture_from_uv.transform_point2(uv);
+            Vec2::new(place.x, 1.0 - place.y) * size
+        });
+        let low = places[0].min(places[1]).min(places[2]) - 1.5;
+        let high = places[0].max(places[1]).max(places[2]) + 1.5;
+        if !(low.cmpge(Vec2::splat(-1.5)).all() && high.cmple(size + 1.5).all()) {
+            return false;
+        }
+        let range = |low: f32, high: f32, count: usize| low.max(0.0) as usize..(high.ceil() as usize).min(count);
+        let (rows, columns) = (range(low.y, high.y, height), range(low.x, high.x, width));
+        let Some(left) = texels_left.checked_sub(rows.len() * columns.len()) else { return false };
+        texels_left = left;
+        rows.into_iter().all(|row| {
+            let texels = &texture.image.texels()[row * width..][..width];
+            texels[columns.clone()].iter().all(|texel| blend.share * texel[texture.channel].to_f32() >= WHOLE)
+        })
+    })
 }
