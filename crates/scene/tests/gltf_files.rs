@@ -204,6 +204,13 @@ fn opaque_materials_have_their_numbers_and_pictures() {
 }
 
 #[test]
+fn surfaces_are_seen_from_both_sides_whatever_the_file_says() {
+    let read = |sides: Value| parse(&with_material(json!({ "doubleSided": sides }))).unwrap();
+    assert_eq!(read(json!(true)), read(json!(false)));
+    assert_eq!(said(&read(json!(false)).warnings), "");
+}
+
+#[test]
 fn pictures_need_texture_coordinates() {
     let texture = json!({ "index": 0 });
     let mut builder = with_material(json!({ "pbrMetallicRoughness": { "baseColorTexture": texture } }));

@@ -74,7 +74,8 @@ fn compare_material(material: &Material, expected: &Value, which: &str) {
     match material.kind {
         MaterialKind::Dielectric { ior, dispersion, tint, absorption, roughness, .. } => {
             assert!(transmits && at("thickness") > 0.0, "{which}");
-            (near(ior, "ior"), near(roughness, "roughness"));
+            near(ior, "ior");
+            near(roughness, "roughness");
             let abbe = 20.0 / at("dispersion");
             assert_eq!(dispersion, if abbe.is_finite() { Dispersion::Abbe(abbe) } else { Dispersion::None }, "{which}");
             let distance = at("attenuation_distance");
@@ -84,7 +85,8 @@ fn compare_material(material: &Material, expected: &Value, which: &str) {
         }
         MaterialKind::ThinWalled { ior, tint, roughness } => {
             assert!(transmits && tint.abs_diff_eq(color, TOLERANCE), "{which}: {tint}");
-            (near(ior, "ior"), near(roughness, "roughness"));
+            near(ior, "ior");
+            near(roughness, "roughness");
         }
         _ => assert!(!transmits, "{which}: {:?}", material.kind),
     }
