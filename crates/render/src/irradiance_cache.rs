@@ -29,9 +29,9 @@ const REACH: f64 = 0.35;
 /// The same in cells of the grid.
 const REACH_CELLS: f64 = 8.0;
 /// Paths for each four pixels squared, at first and at most.
-const ROUNDS: std::ops::RangeInclusive<u32> = 4..=64;
+const ROUNDS: std::ops::RangeInclusive<u32> = 8..=128;
 /// The part of the squared target error that the cache may make up.
-const ERROR_SHARE: f64 = 0.5;
+const ERROR_SHARE: f64 = 0.05;
 /// The part of a place's light that must be in the cache for the place to tell how exact it is.
 const LEAST_LIGHT: f64 = 0.05;
 /// Share of the mean radiance, squared, that is added to a place's own: that of `shaders/errors.wgsl`.

@@ -17,7 +17,8 @@ use crate::error_pass::TileErrors;
 const FIRST_LOOK: u32 = 14;
 /// The most photons of the renderer's own choice, as a power of two.
 const MOST_PHOTONS: u32 = 24;
-/// Photons between two chances to stop, as a power of two.
+/// Photons until the first chance to stop, or to show a picture, and between any others, as powers of two.
+const PHOTONS_AT_FIRST: u32 = 16;
 const PHOTONS_AT_ONCE: u32 = 18;
 /// The part of the squared target error that the maps may make up, and where the scene states its samples.
 const MAP_SHARE: f64 = 0.25;
@@ -187,7 +188,8 @@ impl Course {
     fn next_photons(&self) -> Step {
         let end = self.photons.unwrap_or(self.next_look).min(self.supply.most);
         if self.emitted < end {
-            return Step::Emit(self.emitted..end.min(self.emitted + at_least(self.supply.turns, PHOTONS_AT_ONCE)));
+            let bits = if self.emitted == 0 { PHOTONS_AT_FIRST } else { PHOTONS_AT_ONCE };
+            return Step::Emit(self.emitted..end.min(self.emitted + at_least(self.supply.turns, bits)));
         }
         Step::Probe
     }
