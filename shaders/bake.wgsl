@@ -84,7 +84,7 @@ fn draw_place(texel: BakeTexel, first: vec2<f32>, seed: u32) -> Place {
 fn white_vertex(hit: Hit, side: u32, media: vec4<u32>, ior: f32) -> Vertex {
     let triangle = load_triangle(hit.triangle);
     let outward = normalize(cross(triangle.edge_1, triangle.edge_2));
-    let met = surface_at(hit, triangle, select(outward, -outward, side == 0u));
+    let met = surface_at(hit, triangle, triangle.corner, select(outward, -outward, side == 0u));
     var white: Material;
     white.base = vec3<f32>(1.0);
     white.kind = MATERIAL_DIFFUSE | MATERIAL_RECEIVER;

@@ -353,7 +353,7 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
 fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     let d = (*photon).direction;
     let triangle = load_triangle(hit.triangle);
-    let met = surface_at(hit, triangle, d);
+    let met = surface_at(hit, triangle, (*photon).origin, d);
     let material = met.material;
     let point = met.point;
     if has_footprints {

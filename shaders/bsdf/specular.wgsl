@@ -75,7 +75,10 @@ fn turn(material: Material, d: vec3<f32>, n: vec3<f32>, m: vec3<f32>, sides: Int
         return SpecularEvent(normalize(d + 2.0 * cos_i * m), false, n, select(reflectance, vec3<f32>(1.0), splits));
     }
     if kind == MATERIAL_THIN_WALLED {
-        return SpecularEvent(d, true, n, material.tint);
+        // Straight on where it is smooth, else what is reflected, seen in the surface as in a mirror.
+        let reflected = d + 2.0 * cos_i * m;
+        let passed = select(d, reflected - 2.0 * dot(reflected, n) * n, has_gloss && material.gloss > 0.0);
+        return SpecularEvent(normalize(passed), true, n, material.tint);
     }
     let cos_t = refraction(cos_i, sides.eta).cos_t;
     return SpecularEvent(normalize(sides.eta * d + (sides.eta * cos_i - cos_t) * m), true, n, material.tint);
@@ -144,16 +147,19 @@ fn evaluate_specular(material: Material, wo: vec3<f32>, wi: vec3<f32>, n: vec3<f
     let alpha = material.gloss;
     let kind = material.kind & MATERIAL_KIND_BITS;
     let cos_o = dot(wo, n);
-    let cos_i = dot(wi, n);
+    let passed_wall = kind == MATERIAL_THIN_WALLED && dot(wi, n) < 0.0;
+    // Light that passes a thin wall is turned as what is reflected, on the other side.
+    let turned = select(wi, wi - 2.0 * dot(wi, n) * n, passed_wall);
+    let cos_i = dot(turned, n);
     let transmitted = cos_i < 0.0;
-    let between = select(wo + wi, sides.eta * wo + wi, transmitted);
+    let between = select(wo + turned, sides.eta * wo + turned, transmitted);
     if alpha <= 0.0 || cos_o <= 0.0 || dot(between, between) < 1e-12 || (transmitted && kind != MATERIAL_DIELECTRIC) {
         return LobeValue(vec3<f32>(0.0), 0.0);
     }
     let half_way = normalize(between);
     let m = select(half_way, -half_way, dot(half_way, n) < 0.0);
     let wo_m = dot(wo, m);
-    let wi_m = dot(wi, m);
+    let wi_m = dot(turned, m);
     if wo_m <= 0.0 || (wi_m < 0.0) != transmitted {
         return LobeValue(vec3<f32>(0.0), 0.0);
     }
@@ -163,8 +169,9 @@ fn evaluate_specular(material: Material, wo: vec3<f32>, wi: vec3<f32>, n: vec3<f
     let g_2 = 1.0 / (1.0 + lambda_o + smith_lambda(cos_i, alpha));
     let reflectance = specular_reflectance(material, wo_m, sides);
     if !transmitted {
-        let chance = select(1.0, reflectance.x, kind == MATERIAL_DIELECTRIC);
-        return LobeValue(reflectance * (0.25 * density * g_2), 0.25 * density * g_1 * chance);
+        let chance = select(1.0, select(reflectance.x, 1.0 - reflectance.x, passed_wall), transmits(kind));
+        let share = select(reflectance, (1.0 - reflectance) * material.tint, passed_wall);
+        return LobeValue(share * (0.25 * density * g_2), 0.25 * density * g_1 * chance);
     }
     let stretch = sides.eta * wo_m + wi_m;
     let passed = (1.0 - reflectance.x) * density * wo_m * abs(wi_m) / (stretch * stretch);

@@ -21,10 +21,9 @@ struct SurfaceSample {
 /// What pictures make of a surface's radiance at a point, and the share of it that holes leave.
 fn emission_factor(triangle: u32, material: u32, barycentric: vec2<f32>) -> vec3<f32> {
     let textures = load_material_textures(material);
-    let uv = uv_at(triangle, barycentric);
-    var factor = vec3<f32>(opacity_at(textures, uv));
+    var factor = vec3<f32>(opacity_at(textures, triangle, barycentric));
     if textures.emission != NONE {
-        factor *= sample_texture(load_surface_texture(textures.emission), uv).xyz;
+        factor *= sample_texture(load_surface_texture(textures.emission), uv_at(triangle, barycentric)).xyz;
     }
     return factor;
 }

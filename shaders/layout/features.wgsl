@@ -15,10 +15,12 @@ override has_distant_lights: bool = true;
 override has_environment: bool = true;
 /// Whether surfaces show pictures.
 override has_textures: bool = true;
-/// Whether meshes have colours at their vertices.
+/// Whether meshes have colours or opacities at their vertices.
 override has_vertex_colors: bool = true;
 /// Whether rays may pass surfaces as if they were not there.
 override has_holes: bool = true;
+/// Whether a surface is of two materials.
+override has_blends: bool = true;
 /// Whether light has wavelengths.
 override has_dispersion: bool = true;
 /// The kind of light whose photons the kernel emits: one of the LIGHT_ constants.

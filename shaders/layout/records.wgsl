@@ -141,8 +141,8 @@ fn load_environment(index: u32) -> vec4<f32> {
 
 fn load_texture_coordinates(triangle: u32) -> TextureCoordinates {
     let texel_0 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle), 0));
-    let texel_1 = bitcast<vec4<f32>>(textureLoad(texture_coordinates, record_texel(2u * triangle + 1u), 0));
-    return TextureCoordinates(texel_0, texel_1.xy, vec2<u32>(0u));
+    let texel_1 = textureLoad(texture_coordinates, record_texel(2u * triangle + 1u), 0);
+    return TextureCoordinates(texel_0, bitcast<vec2<f32>>(texel_1.xy), texel_1.zw);
 }
 
 fn load_vertex_colors(triangle: u32) -> VertexColors {
@@ -160,7 +160,7 @@ fn load_material_textures(material: u32) -> MaterialTextures {
     return MaterialTextures(
         texel_0.x, texel_0.y, texel_0.z, texel_0.w,
         texel_1.x, bitcast<f32>(texel_1.y), texel_1.z, bitcast<f32>(texel_1.w),
-        bitcast<f32>(texel_2.x), array<u32, 3>(),
+        bitcast<f32>(texel_2.x), texel_2.y, bitcast<f32>(texel_2.z), texel_2.w,
     );
 }
 

@@ -54,11 +54,12 @@ struct TextureCoordinates {
     uv_01: vec4<f32>,
     /// Those of the third corner.
     uv_2: vec2<f32>,
-    /// Unused.
-    padding: vec2<u32>,
+    /// Unit tangents of the corners, world frame, along s of the normal map's picture; 0 without. Six octahedral coordinates of TANGENT_BITS bits, three in the first word,
+    /// with TANGENT_PRESENT, and with TANGENT_LEFT where t grows against normal × tangent, and three in the second.
+    tangents: vec2<u32>,
 }
 
-/// Factors on the colour of a triangle at its corners, in the order of the triangles: red and green, then blue, in half precision.
+/// Factors on the colour and the opacity of a triangle at its corners, in the order of the triangles: red and green, then blue and opacity, in half precision.
 struct VertexColors {
     /// That of the first corner.
     color_0: vec2<u32>,
@@ -90,8 +91,12 @@ struct MaterialTextures {
     opacity_factor: f32,
     /// Opacity from which on a surface is whole, and below which it is a hole; negative where it is neither.
     opacity_cutoff: f32,
-    /// Unused.
-    padding: array<u32, 3>,
+    /// Index of the material that the surface is for the rest of the light, or NONE.
+    rest: u32,
+    /// Share of the light that meets this material and not the rest, before its picture.
+    share: f32,
+    /// Factor on that share.
+    share_picture: u32,
 }
 
 /// A picture as it lies on a surface.
@@ -226,6 +231,17 @@ const MATERIAL_GROUP_SHIFT: u32 = 16u;
 const TRIANGLE_SMOOTH: u32 = 1u;
 /// Set where rays may pass through.
 const TRIANGLE_HAS_HOLES: u32 = 2u;
+/// Set where the material has a rest.
+const TRIANGLE_BLENDED: u32 = 4u;
+
+/// Bits of a tangent's coordinate.
+const TANGENT_BITS: u32 = 10u;
+/// What a coordinate of 1 is, and what is added to it.
+const TANGENT_SCALE: u32 = 511u;
+/// Set in the first word of tangents that there are.
+const TANGENT_PRESENT: u32 = 0x80000000u;
+/// Set there where t grows against normal × tangent.
+const TANGENT_LEFT: u32 = 0x40000000u;
 
 const WRAP_REPEAT: u32 = 0u;
 const WRAP_MIRROR: u32 = 1u;
@@ -287,5 +303,5 @@ const WAVELENGTH_STEPS: u32 = 512u;
 /// weight of its wavelength, and the primaries' spectra there. Then a row for each dielectric with dispersion, of a texel for each step: its
 /// index of refraction there and at the next.
 @group(0) @binding(12) var spectra: texture_2d<u32>;
-/// VertexColors records of 2 texels; without vertex colours, a single one.
+/// VertexColors records of 2 texels; without factors at vertices, a single one.
 @group(0) @binding(13) var vertex_colors: texture_2d<u32>;

@@ -39,7 +39,7 @@ struct Vertex {
 
 /// The surface at `hit`. Its media say whether a boundary exists at all: where `beyond` begins with the same medium, it does not.
 fn vertex_at(path: ptr<function, Path>, hit: Hit, triangle: Triangle) -> Vertex {
-    let met = surface_at(hit, triangle, (*path).direction);
+    let met = surface_at(hit, triangle, (*path).origin, (*path).direction);
     let material = met.material;
     let point = met.point;
     let media = (*path).media;

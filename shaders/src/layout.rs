@@ -102,10 +102,11 @@ shared_structs! {
         uv_01: [f32; 4],
         /// Those of the third corner.
         uv_2: [f32; 2],
-        /// Unused.
-        padding: [u32; 2],
+        /// Unit tangents of the corners, world frame, along s of the normal map's picture; 0 without. Six octahedral coordinates of TANGENT_BITS bits, three in the first word,
+        /// with TANGENT_PRESENT, and with TANGENT_LEFT where t grows against normal × tangent, and three in the second.
+        tangents: [u32; 2],
     }
-    /// Factors on the colour of a triangle at its corners, in the order of the triangles: red and green, then blue, in half precision.
+    /// Factors on the colour and the opacity of a triangle at its corners, in the order of the triangles: red and green, then blue and opacity, in half precision.
     struct VertexColors {
         /// That of the first corner.
         color_0: [u32; 2],
@@ -136,8 +137,12 @@ shared_structs! {
         opacity_factor: f32,
         /// Opacity from which on a surface is whole, and below which it is a hole; negative where it is neither.
         opacity_cutoff: f32,
-        /// Unused.
-        padding: [u32; 3],
+        /// Index of the material that the surface is for the rest of the light, or NONE.
+        rest: u32,
+        /// Share of the light that meets this material and not the rest, before its picture.
+        share: f32,
+        /// Factor on that share.
+        share_picture: u32,
     }
     /// A picture as it lies on a surface.
     struct SurfaceTexture {
@@ -595,6 +600,20 @@ pub mod triangle_flag {
     pub const SMOOTH: u32 = 1;
     /// Set where rays may pass through.
     pub const HAS_HOLES: u32 = 2;
+    /// Set where the material has a rest.
+    pub const BLENDED: u32 = 4;
+}
+
+/// What [`TextureCoordinates::tangents`] is made of.
+pub mod tangent {
+    /// Bits of a tangent's coordinate.
+    pub const BITS: u32 = 10;
+    /// What a coordinate of 1 is, and what is added to it.
+    pub const SCALE: u32 = 511;
+    /// Set in the first word of tangents that there are.
+    pub const PRESENT: u32 = 0x8000_0000;
+    /// Set there where t grows against normal × tangent.
+    pub const LEFT: u32 = 0x4000_0000;
 }
 
 /// Bits of [`SurfaceTexture::flags`].
@@ -700,6 +719,11 @@ pub const SHARED_CONSTANTS: &[(&str, u32)] = &[
     ("MATERIAL_GROUP_SHIFT", material_kind::GROUP_SHIFT),
     ("TRIANGLE_SMOOTH", triangle_flag::SMOOTH),
     ("TRIANGLE_HAS_HOLES", triangle_flag::HAS_HOLES),
+    ("TRIANGLE_BLENDED", triangle_flag::BLENDED),
+    ("TANGENT_BITS", tangent::BITS),
+    ("TANGENT_SCALE", tangent::SCALE),
+    ("TANGENT_PRESENT", tangent::PRESENT),
+    ("TANGENT_LEFT", tangent::LEFT),
     ("WRAP_REPEAT", texture_flag::WRAP_REPEAT),
     ("WRAP_MIRROR", texture_flag::WRAP_MIRROR),
     ("WRAP_CLAMP", texture_flag::WRAP_CLAMP),

@@ -5,9 +5,11 @@ import package::geometry::traverse::Hit;
 import package::layout::features::{has_gloss, has_textures, has_vertex_colors};
 import package::layout::records::{load_material, load_material_textures, load_surface_texture, load_texture_coordinates, load_vertex_colors};
 import package::layout::scene::{
-    Material, SurfaceTexture, TextureCoordinates, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, MATERIAL_TEXTURED, NONE,
+    Material, Triangle, MATERIAL_COATED, MATERIAL_KIND_BITS, MATERIAL_METALLIC_ROUGHNESS, MATERIAL_MIRROR, MATERIAL_TEXTURED, NONE,
 };
-import package::texture::lookup::{channel_of, interpolate_uv, picture_place, sample_texture};
+import package::texture::blend::material_taken;
+import package::texture::lookup::{channel_of, interpolate_uv, sample_texture};
+import package::texture::tangent::mapped_normal;
 
 /// Roughness under which a surface is perfectly smooth.
 const SMOOTH: f32 = 0.03;
@@ -24,26 +26,6 @@ const SLOTS: u32 = 5u;
 struct TexturedSurface {
     material: Material,
     point: SurfacePoint,
-}
-
-/// The shading normal that a normal map's value `c` makes, on the front; `n` where the texture has no direction there.
-fn mapped_normal(texture: SurfaceTexture, strength: f32, c: vec3<f32>, coordinates: TextureCoordinates, triangle: Triangle, n: vec3<f32>) -> vec3<f32> {
-    let corner = picture_place(texture, coordinates.uv_01.xy);
-    let along_1 = picture_place(texture, coordinates.uv_01.zw) - corner;
-    let along_2 = picture_place(texture, coordinates.uv_2) - corner;
-    let turn = sign(along_1.x * along_2.y - along_2.x * along_1.y);
-    let t_0 = turn * (along_2.y * triangle.edge_1 - along_1.y * triangle.edge_2);
-    let b_0 = turn * (along_1.x * triangle.edge_2 - along_2.x * triangle.edge_1);
-    let across = t_0 - n * dot(n, t_0);
-    let size = length(across);
-    if turn == 0.0 || size == 0.0 {
-        return n;
-    }
-    let t = across / size;
-    let right = cross(n, t);
-    let b = select(-right, right, dot(right, b_0) >= 0.0);
-    let m = (2.0 * c - 1.0) * vec3<f32>(strength, strength, 1.0);
-    return normalize(m.x * t + m.y * b + m.z * n);
 }
 
 /// The factor that a triangle's vertex colours make at a hit.
@@ -82,9 +64,9 @@ fn derive(source: Material) -> Material {
     return material;
 }
 
-/// The surface at a hit, seen along `direction`, from its material and point before pictures.
-fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
-    let textures = load_material_textures(triangle.material);
+/// The surface at a hit, seen along `direction`, from its material, of index `index`, and point before pictures.
+fn textured_surface(source: Material, index: u32, untextured: SurfacePoint, hit: Hit, direction: vec3<f32>) -> TexturedSurface {
+    let textures = load_material_textures(index);
     let coordinates = load_texture_coordinates(hit.triangle);
     let uv = interpolate_uv(coordinates, hit.barycentric);
     var material = source;
@@ -107,7 +89,7 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
         material.emission *= select(vec3<f32>(1.0), value.xyz, slot == SLOT_EMISSION);
         if slot == SLOT_NORMAL {
             let n = select(-point.n_smooth, point.n_smooth, point.front);
-            let mapped = mapped_normal(texture, textures.normal_strength, value.xyz, coordinates, triangle, n);
+            let mapped = mapped_normal(coordinates.tangents, hit.barycentric, textures.normal_strength, value.xyz, n);
             point.n_smooth = select(-mapped, mapped, point.front);
             point.n_s = select(point.n_s, point.n_smooth, dot(direction, point.n_smooth) < 0.0);
         }
@@ -115,12 +97,13 @@ fn textured_surface(source: Material, untextured: SurfacePoint, hit: Hit, triang
     return TexturedSurface(derive(material), point);
 }
 
-/// The surface at a hit, seen along `direction`, with its pictures and vertex colours if it has any.
-fn surface_at(hit: Hit, triangle: Triangle, direction: vec3<f32>) -> TexturedSurface {
+/// The surface that a ray meets at a hit, with its pictures and vertex colours if it has any.
+fn surface_at(hit: Hit, triangle: Triangle, origin: vec3<f32>, direction: vec3<f32>) -> TexturedSurface {
     let point = surface_point(hit, triangle, direction);
-    let material = load_material(triangle.material);
+    let index = material_taken(hit, triangle, origin, direction);
+    let material = load_material(index);
     if has_textures && (material.kind & MATERIAL_TEXTURED) != 0u {
-        return textured_surface(material, point, hit, triangle, direction);
+        return textured_surface(material, index, point, hit, direction);
     }
     return TexturedSurface(material, point);
 }

@@ -236,6 +236,7 @@ fn rough_glass_and_metal() {
         "{ type = \"dielectric\", ior = 1.5, roughness = 0.2, tint = [1, 0.9, 0.8] }",
         "{ type = \"conductor\", metal = \"copper\" }",
         "{ type = \"conductor\", metal = \"gold\", roughness = 0.4 }",
+        "{ type = \"thin_walled\", tint = [1, 0.9, 0.8], roughness = 0.3 }",
     ] {
         assert_alike(&of(glass, PLASTER, ""), 5e-3);
     }
@@ -300,6 +301,12 @@ fn a_mask_passes_light_where_it_has_holes() {
     let pane = scene.materials.iter_mut().find(|material| material.name == "pane").expect("the pane's material");
     pane.textures.opacity = Some(pattern(8, 8, |x, y| [((x + y) % 2) as f32; 4]));
     pane.opacity_cutoff = Some(0.5);
+    assert_alike(&scene, 5e-3);
+    // The same holes by the opacity of vertices: half of the pane.
+    let index = scene.materials.iter().position(|material| material.name == "pane").expect("the pane's material");
+    scene.materials[index].textures.opacity = None;
+    let pane = scene.objects.iter_mut().find(|object| object.name == "rectangle 2").expect("the pane");
+    std::sync::Arc::make_mut(&mut pane.mesh).opacities = vec![1.0, 0.0, 0.0, 1.0];
     assert_alike(&scene, 5e-3);
 }
 

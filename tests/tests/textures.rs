@@ -1,9 +1,11 @@
 //! Pictures on surfaces against known answers.
 
+use std::sync::Arc;
+
 use diacaustic::Film;
-use diacaustic_scene::{Material, MaterialKind, NormalMap, Scene, Texture, TextureFilter, Wrap};
+use diacaustic_scene::{Material, MaterialKind, Mesh, NormalMap, Scene, Texture, TextureFilter, Wrap};
 use diacaustic_tests::{emit, normal_pattern, pattern, render, scene};
-use glam::{Affine2, DVec3, Vec2, Vec3};
+use glam::{Affine2, DVec3, Vec2, Vec3, Vec4};
 
 /// A picture of red numbers, with green twice and blue three times as great, and an alpha of one half.
 fn picture(width: u32, reds: &[f32]) -> Texture {
@@ -198,6 +200,100 @@ fn a_normal_map_tilts_the_surface_to_caustics() {
     }
 }
 
+/// The floor in two halves, along x and mirrored against it, of which the left is up to the middle of `uvs`.
+fn two_halves(uvs: [[f32; 2]; 8], tangents: Vec<Vec4>) -> Scene {
+    let mut scene = floor();
+    let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+    let half = |x: f32| [corner(x, 0.5), corner(x + 1.0, 0.5), corner(x + 1.0, -0.5), corner(x, -0.5)];
+    scene.objects[0].mesh = Arc::new(Mesh {
+        positions: [half(-1.0), half(0.0)].concat(),
+        normals: vec![Vec3::Y; 8],
+        uvs: uvs.map(Vec2::from).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+        tangents,
+        ..Mesh::default()
+    });
+    scene.lights[0].kind = diacaustic_scene::LightKind::Distant {
+        direction: Vec3::new(-0.6, -0.8, 0.0),
+        angular_radius: 0.0,
+        irradiance: Vec3::splat(std::f32::consts::PI),
+    };
+    scene
+}
+
+/// What a surface of unit normal `n` shows of the light of [`two_halves`].
+fn lit(n: Vec3) -> f64 {
+    f64::from(n.dot(Vec3::new(0.6, 0.8, 0.0)))
+}
+
+#[test]
+fn bumps_look_alike_where_the_picture_is_mirrored() {
+    let (upright, mirrored) =
+        ([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
+    let uvs = [upright, mirrored].concat().try_into().expect("eight");
+    let stated = [vec![Vec4::new(1.0, 0.0, 0.0, 1.0); 4], vec![Vec4::new(-1.0, 0.0, 0.0, -1.0); 4]].concat();
+    for tangents in [Vec::new(), stated] {
+        let mut scene = two_halves(uvs, tangents);
+        // A ridge along the picture's middle: up on its left, down on its right, and steeper on its upper half.
+        let slope = |column: u32, row: u32| [if column == 0 { -0.5 } else { 0.5 }, if row == 0 { 0.5 } else { 0.0 }];
+        let mut map = normal_pattern(2, 2, slope).expect("a map");
+        map.texture.filter = TextureFilter::Nearest;
+        scene.materials[0].textures.normal = Some(map);
+        let film = render(&scene);
+        for (rows, across) in [(1..7, 0.5f32), (9..15, 0.0)] {
+            for (quarter, slope) in [-0.5f32, 0.5, -0.5, 0.5].into_iter().enumerate() {
+                // The mirrored ridge is a ridge: the picture's right half lies left there, and its slopes with it. Its up is −z.
+                let expected = lit(Vec3::new(slope, 1.0, -across).normalize());
+                let found = mean(&film, 8 * quarter + 2..8 * quarter + 6, rows.clone()).x;
+                assert!((found - expected).abs() < 3e-3, "quarter {quarter}, {across}: {found}, known {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn tangents_are_interpolated_between_the_corners() {
+    let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let (along, away) = (Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 0.0, -1.0, 1.0));
+    let tangents = [along, away, away, along].repeat(2);
+    let mut scene = two_halves([uvs, uvs].concat().try_into().expect("eight"), tangents);
+    scene.materials[0].textures.normal = tilt(0.5);
+    let film = render(&scene);
+    for column in 0..32 {
+        let s = ((column % 16) as f32 + 0.5) / 16.0;
+        let tangent = ((1.0 - s) * along.truncate() + s * away.truncate()).normalize();
+        let expected = lit((0.5 * tangent + Vec3::Y).normalize());
+        let found = mean(&film, column..column + 1, 0..16).x;
+        assert!((found - expected).abs() < 3e-3, "column {column}: {found}, known {expected}");
+    }
+}
+
+#[test]
+fn opacity_at_vertices_thins_the_surface() {
+    // From 1 on the left to 0 on the right, seen against a background of 1; with a cutoff half of it is there.
+    for cutoff in [None, Some(0.5)] {
+        let mut scene = floor();
+        scene.background = Vec3::ONE;
+        scene.lights.clear();
+        scene.materials[0].kind = MaterialKind::Diffuse { albedo: Vec3::ZERO };
+        scene.materials[0].opacity_cutoff = cutoff;
+        let mesh = Arc::make_mut(&mut scene.objects[0].mesh);
+        mesh.opacities = mesh.positions.iter().map(|position| 0.5 - 0.5 * position.x).collect();
+        scene.settings.samples = Some(1024);
+        let film = render(&scene);
+        for column in 0..32 {
+            let s = (column as f64 + 0.5) / 32.0;
+            let found = mean(&film, column..column + 1, 0..16).x;
+            let expected = if cutoff.is_some() { f64::from(u8::from(s > 0.5)) } else { s };
+            let is_edge = cutoff.is_some() && (15..17).contains(&column);
+            assert!(
+                is_edge || (found - expected).abs() < 0.02,
+                "{cutoff:?}, column {column}: {found}, known {expected}"
+            );
+        }
+    }
+}
+
 /// The floor seen past a sheet between camera and light, whose holes `edit` makes.
 fn behind_a_sheet(edit: impl Fn(&mut Material)) -> Film {
     let mut scene = scene(
@@ -255,5 +351,5 @@ fn a_surface_with_a_picture_shines_as_its_mean() {
     let irradiance = 0.5 * 0.15 * 1000.0 * 0.04 / 100.0;
     let expected = irradiance / std::f64::consts::PI * DVec3::new(1.0, 2.0, 3.0);
     assert!((found / expected - 1.0).abs().max_element() < 5e-3, "{found}, known {expected}");
-    assert_eq!(scene.materials[panel].opacity_at(Vec2::ZERO), 0.5);
+    assert_eq!(scene.materials[panel].opacity_at(Vec2::ZERO, 1.0), 0.5);
 }

@@ -36,15 +36,14 @@ impl Crossing {
     /// Whether light without a wavelength takes one at what a ray within `media` meets, before it is asked [what that
     /// is](Self::of).
     pub fn disperses(world: &World, hit: &Hit, facing: &Facing, media: Media) -> bool {
-        let beyond = world.dielectrics().beyond(media, world.material_index(hit.triangle), facing.front);
+        let beyond = Self::beyond(world, hit, facing, media);
         world.dielectrics().disperse_between(&media, &beyond)
     }
 
     /// What a ray within `media` meets.
     pub fn of(world: &World, hit: &Hit, facing: &Facing, media: Media, spectrum: Spectrum) -> Self {
-        let material = world.material_index(hit.triangle);
-        let beyond = world.dielectrics().beyond(media, material, facing.front);
-        let prepared = world.prepared(hit.triangle);
+        let beyond = Self::beyond(world, hit, facing, media);
+        let prepared = world.prepared_at(hit);
         let is_dielectric = matches!(prepared.material.kind, MaterialKind::Dielectric { .. });
         if is_dielectric && beyond.filling() == media.filling() {
             return Self::Nothing(beyond);
@@ -52,6 +51,14 @@ impl Crossing {
         let ior = [&media, &beyond].map(|media| world.dielectrics().ior(media, &spectrum));
         let ambient = world.scene().ambient.as_dvec3();
         Self::Surface(Surface::at_point(prepared, &world.factors(hit), ambient, ior, spectrum), beyond)
+    }
+
+    /// The list of a ray that crosses the triangle. What a dielectric is blended with bounds nothing.
+    fn beyond(world: &World, hit: &Hit, facing: &Facing, media: Media) -> Media {
+        match hit.takes_rest {
+            true => media,
+            false => world.dielectrics().beyond(media, world.material_index(hit.triangle), facing.front),
+        }
     }
 }
 
@@ -99,8 +106,8 @@ impl Specular {
             MaterialKind::Dielectric { tint, roughness, .. } => {
                 (Self::Dielectric { eta: ior / ior_beyond, tint: tinted(tint) }, roughness)
             }
-            MaterialKind::ThinWalled { ior: own, tint } => {
-                (Self::ThinWalled { eta: ior / f64::from(own), tint: tinted(tint) }, 0.0)
+            MaterialKind::ThinWalled { ior: own, tint, roughness } => {
+                (Self::ThinWalled { eta: ior / f64::from(own), tint: tinted(tint) }, roughness)
             }
             MaterialKind::Coated { ior: own, roughness, .. } => (Self::Coat { eta: ior / f64::from(own) }, roughness),
             MaterialKind::MetallicRoughness { base_color, reflectance, metallic, roughness } => {

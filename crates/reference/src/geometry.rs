@@ -64,6 +64,8 @@ pub struct Hit {
     pub distance: f64,
     /// Weights of the triangle's three corners, which sum to 1.
     pub barycentric: DVec3,
+    /// Whether the ray takes what the material is blended with; see [`World::taken`].
+    pub takes_rest: bool,
 }
 
 /// The first thing along a ray.
@@ -104,6 +106,8 @@ pub struct World<'a> {
     dielectrics: Dielectrics,
     spectrum: Spectrum,
     materials: Vec<PreparedMaterial<'a>>,
+    /// What each material is blended with.
+    rests: Vec<Option<PreparedMaterial<'a>>>,
     /// Whether rays may pass any of the materials.
     has_holes: bool,
     environment: Option<Environment>,
@@ -126,7 +130,8 @@ impl<'a> World<'a> {
             bounds: bounding_sphere(&triangles, &light_shapes),
             spectrum: Spectrum::of_render(scene.settings.wavelength),
             materials: scene.materials.iter().map(PreparedMaterial::new).collect(),
-            has_holes: scene.materials.iter().any(Material::has_holes),
+            rests: scene.materials.iter().map(|material| material.rest().map(PreparedMaterial::new)).collect(),
+            has_holes: scene.has_holes(),
             environment: Environment::of(scene),
             emissive: EmissiveSurfaces::of(scene, &triangles, &dielectrics),
             triangles,
@@ -210,6 +215,12 @@ impl<'a> World<'a> {
 
     pub(crate) fn prepared(&self, triangle: usize) -> &PreparedMaterial<'a> {
         &self.materials[self.material_index(triangle)]
+    }
+
+    /// The material that a ray takes where it meets a triangle.
+    pub(crate) fn prepared_at(&self, hit: &Hit) -> &PreparedMaterial<'a> {
+        let rest = self.rests[self.material_index(hit.triangle)].as_ref().filter(|_| hit.takes_rest);
+        rest.unwrap_or_else(|| self.prepared(hit.triangle))
     }
 
     pub(crate) fn environment(&self) -> Option<&Environment> {

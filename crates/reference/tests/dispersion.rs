@@ -266,7 +266,7 @@ fn colourful() -> Scene {
         roughness: 0.4,
     };
     let green = MaterialKind::Diffuse { albedo: Vec3::new(0.2, 0.7, 0.3) };
-    let tinted = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::new(0.9, 0.9, 0.4) };
+    let tinted = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::new(0.9, 0.9, 0.4), roughness: 0.0 };
     let cube = |half: f32| block(Vec3::splat(-half), Vec3::splat(half));
     let parts = vec![
         (floor(3.0), green, -0.4 * Vec3::Y),

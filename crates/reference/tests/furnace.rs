@@ -80,7 +80,7 @@ fn camera_inside_overlapping_glass() {
 
 #[test]
 fn thin_walls() {
-    let wall = || MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
+    let wall = || MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 };
     let pane = Mesh::rectangle(Vec3::ZERO, 2.0 * Vec3::X, 2.0 * Vec3::Y);
     let parts = vec![
         (ball(0.5, 3), wall(), Vec3::new(0.3, 0.0, 0.0)),

@@ -150,7 +150,7 @@ fn photons_bring_what_light_tracing_finds() {
     for (kind, other) in [
         (glass(1.4), MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.1 }),
         (frosted(1.4, 0.4), metal),
-        (glass(1.3), MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::splat(0.7) }),
+        (glass(1.3), MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::splat(0.7), roughness: 0.0 }),
     ] {
         for light in &lights {
             let ball = (fine_ball(), kind.clone(), BALL.as_vec3());

@@ -104,7 +104,7 @@ fn a_texel_is_worth_the_material_that_it_makes() {
                 metallic,
                 roughness,
             },
-            MaterialKind::ThinWalled { ior: 1.5, tint: color },
+            MaterialKind::ThinWalled { ior: 1.5, tint: color, roughness: 0.0 },
         ]
     };
     let seen = |kind: MaterialKind, is_textured: bool| {
@@ -341,7 +341,7 @@ fn ledger_closes_with_pictures_everywhere() {
     let screen = Mesh::sphere(Vec3::new(0.2, 0.6, 0.6), 0.3, 4);
     let parts = vec![
         (plate(0.0, 3.0), diffuse(0.5), Vec3::ZERO),
-        (lens, MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }, Vec3::ZERO),
+        (lens, MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 }, Vec3::ZERO),
         (screen, varnish, Vec3::ZERO),
     ];
     let position = Vec3::new(0.3, 2.2, 0.2);
@@ -407,7 +407,7 @@ fn shining_picture_is_the_sum_of_its_points() {
         assert_agrees(&traced, expected, 1e-3, "from the lamp");
     }
     // As paths meet it: behind a pane that is hardly there.
-    let clear = MaterialKind::ThinWalled { ior: 1.0 + 1e-4, tint: Vec3::ONE };
+    let clear = MaterialKind::ThinWalled { ior: 1.0 + 1e-4, tint: Vec3::ONE, roughness: 0.0 };
     let mut object = scene.objects[0].clone();
     (object.mesh, object.materials) = (Arc::new(plate(0.4, 4.0)), vec![2]);
     scene.objects.push(object);

@@ -30,10 +30,12 @@ pub(crate) struct Features {
     environment: bool,
     /// Pictures or colours that make surfaces differ from point to point.
     textures: bool,
-    /// Colours at vertices.
+    /// Colours or opacities at vertices.
     vertex_colors: bool,
     /// Surfaces that rays may pass as if they were not there.
     holes: bool,
+    /// Surfaces of two materials.
+    blends: bool,
     /// Light of single wavelengths.
     dispersion: bool,
     /// The kind of light that emits photons.
@@ -60,19 +62,21 @@ pub(crate) struct Features {
 
 impl Features {
     pub fn of(scene: &Scene) -> Self {
-        let kinds = || scene.materials.iter().map(|material| &material.kind);
+        let parts = || scene.materials.iter().flat_map(|material| [Some(material), material.rest()]).flatten();
+        let kinds = || parts().map(|material| &material.kind);
         let shining = kinds_of_light(scene);
         let shines = |wanted: &[u32]| shining.iter().any(|kind| wanted.contains(kind));
         Self {
-            gloss: scene.materials.iter().any(has_gloss),
+            gloss: parts().any(has_gloss),
             conductors: kinds().any(|kind| matches!(kind, MaterialKind::Conductor { .. })),
             point_lights: shines(&[light_kind::POINT, light_kind::SPOT]),
             surface_lights: shines(&[light_kind::SURFACE]),
             distant_lights: shines(&[light_kind::DISTANT, light_kind::ENVIRONMENT]),
             environment: shines(&[light_kind::ENVIRONMENT]),
-            textures: scene.has_vertex_colors() || scene.materials.iter().any(|material| material.textures.any()),
-            vertex_colors: scene.has_vertex_colors(),
-            holes: scene.materials.iter().any(Material::has_holes),
+            textures: scene.has_vertex_factors() || parts().any(|material| material.textures.any()),
+            vertex_colors: scene.has_vertex_factors(),
+            holes: scene.has_holes(),
+            blends: scene.materials.iter().any(|material| material.blend.is_some()),
             dispersion: scene.has_dispersion(),
             photon_light_kind: 0,
             guide: false,
@@ -99,10 +103,10 @@ impl Features {
 
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
-        let Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, .. } = self;
+        let Self { gloss, conductors, textures, vertex_colors, holes, blends, dispersion, paper_refraction, .. } = self;
         let RenderSettings { guiding: guide, footprints, .. } = *settings;
         let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
-        Self { gloss, conductors, textures, vertex_colors, holes, dispersion, paper_refraction, ..photons }
+        Self { gloss, conductors, textures, vertex_colors, holes, blends, dispersion, paper_refraction, ..photons }
     }
 
     /// The same for camera paths that note what they see of the energy maps.
@@ -128,6 +132,7 @@ impl Features {
             ("has_textures", f64::from(self.textures)),
             ("has_vertex_colors", f64::from(self.vertex_colors)),
             ("has_holes", f64::from(self.holes)),
+            ("has_blends", f64::from(self.blends)),
             ("has_dispersion", f64::from(self.dispersion)),
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
@@ -155,11 +160,10 @@ fn paper_constant(settings: &RenderSettings) -> u32 {
 fn has_gloss(material: &Material) -> bool {
     match material.kind {
         MaterialKind::Coated { .. } | MaterialKind::MetallicRoughness { .. } => true,
-        MaterialKind::Dielectric { roughness, .. } | MaterialKind::Conductor { roughness, .. } => roughness >= SMOOTH,
-        MaterialKind::Diffuse { .. }
-        | MaterialKind::Phong { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::ThinWalled { .. } => false,
+        MaterialKind::Dielectric { roughness, .. }
+        | MaterialKind::ThinWalled { roughness, .. }
+        | MaterialKind::Conductor { roughness, .. } => roughness >= SMOOTH,
+        MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } | MaterialKind::Mirror { .. } => false,
     }
 }
 

@@ -96,11 +96,7 @@ impl IrradianceCache {
 
     /// Measures bounced light by the paths of `follow`, as many as its error asks for, and lets kernels read it. Returns its error: the mean over the
     /// picture of its squared deviation, relative to the brightness.
-    pub fn fill(
-        &self,
-        gpu: &Gpu,
-        mut follow: impl FnMut() -> Result<Vec<Sighting>, Error>,
-    ) -> Result<f64, Error> {
+    pub fn fill(&self, gpu: &Gpu, mut follow: impl FnMut() -> Result<Vec<Sighting>, Error>) -> Result<f64, Error> {
         // Whole powers of two of the paths' low-discrepancy points are spread evenly, each half by itself too.
         let mut all = vec![Found::default(); self.nodes];
         let mut rounds = 0;
@@ -171,8 +167,7 @@ impl IrradianceCache {
         let mut texels = vec![[0.0; 4]; nodes.len()];
         for grid in self.grids.iter().flatten() {
             for (texel, node) in texels[grid.first..].iter_mut().zip(&nodes[grid.first..grid.first + grid.nodes()]) {
-                let is_known =
-                    node.reach * node.inverse_distance <= REACH && node.reach <= REACH_CELLS * grid.cell;
+                let is_known = node.reach * node.inverse_distance <= REACH && node.reach <= REACH_CELLS * grid.cell;
                 if is_known {
                     *texel = node.irradiance().extend(1.0).to_array();
                 }

@@ -170,6 +170,7 @@ mod self_test;
 mod sightings;
 mod spectra_records;
 mod statistics;
+mod tangent_records;
 mod texture_records;
 mod tile_choice;
 mod vertex_color_records;

@@ -169,8 +169,8 @@ impl Lights {
         emitter.record.extent = total as f32;
         let strength = Vec3::from(emitter.record.strength);
         let (mean, most) = match scene.materials.get(material as usize) {
-            Some(material) if material.textures.any() || material.has_holes() => {
-                emission_factors(material, &own, &areas)
+            Some(material) if material.textures.any() || own.iter().any(|(_, t)| has_holes(scene, t)) => {
+                emission_factors(scene, material, &own, &areas)
             }
             _ => (Vec3::ONE, Vec3::ONE),
         };
@@ -220,31 +220,56 @@ const EMISSION_POINTS: f64 = 262_144.0;
 const LEAST_MEAN_EMISSION: f32 = 1e-4;
 
 /// What pictures and holes make of a surface's emission: the mean over its area, by points of Roberts' R₂ sequence, and the most there can be.
-fn emission_factors(material: &Material, triangles: &[(usize, &WorldTriangle)], areas: &[f64]) -> (Vec3, Vec3) {
+fn emission_factors(
+    scene: &Scene,
+    material: &Material,
+    triangles: &[(usize, &WorldTriangle)],
+    areas: &[f64],
+) -> (Vec3, Vec3) {
     let total: f64 = areas.iter().sum();
     let mut sum = DVec3::ZERO;
     for ((_, triangle), area) in triangles.iter().zip(areas) {
         let uvs = triangle.uvs.unwrap_or_default();
+        let opacities = triangle.arrange(corner_opacities(scene, triangle));
         let points = (EMISSION_POINTS * area / total).ceil() as u32;
-        let of_triangle: DVec3 = (0..points).map(|i| emission_factor(material, uv_of_point(uvs, i)).as_dvec3()).sum();
+        let at = |i: u32| {
+            let [v, w] = point_of_triangle(i);
+            let uv = uvs[0] + v * (uvs[1] - uvs[0]) + w * (uvs[2] - uvs[0]);
+            let opacity = (1.0 - v - w) * opacities[0] + v * opacities[1] + w * opacities[2];
+            emission_factor(material, uv, opacity).as_dvec3()
+        };
+        let of_triangle: DVec3 = (0..points).map(at).sum();
         sum += of_triangle * (area / f64::from(points));
     }
     let most = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.image.most().truncate());
     ((sum / total).as_vec3().max(LEAST_MEAN_EMISSION * most), most)
 }
 
-/// Point `i` of a sequence that fills a triangle evenly.
-fn uv_of_point([a, b, c]: [Vec2; 3], i: u32) -> Vec2 {
+/// Weights of the second and the third corner at point `i` of a sequence that fills a triangle evenly.
+fn point_of_triangle(i: u32) -> [f32; 2] {
     let u =
         [0.754_877_666_246_692_8, 0.569_840_290_998_053_3].map(|step: f64| (0.5 + step * f64::from(i)).fract() as f32);
-    let folded = if u[0] + u[1] > 1.0 { [1.0 - u[0], 1.0 - u[1]] } else { u };
-    a + folded[0] * (b - a) + folded[1] * (c - a)
+    if u[0] + u[1] > 1.0 { [1.0 - u[0], 1.0 - u[1]] } else { u }
 }
 
-/// The factor on a surface's emission at texture coordinates.
-fn emission_factor(material: &Material, uv: Vec2) -> Vec3 {
+/// Whether rays may pass a triangle of one of the scene's objects.
+fn has_holes(scene: &Scene, triangle: &WorldTriangle) -> bool {
+    let object = scene.objects.get(triangle.object as usize);
+    object.is_some_and(|object| object.has_holes(&scene.materials, triangle.material as usize))
+}
+
+/// The opacities of a triangle's vertices in its mesh's order, 1 on a mesh without.
+fn corner_opacities(scene: &Scene, triangle: &WorldTriangle) -> [f32; 3] {
+    let mesh = scene.objects.get(triangle.object as usize).map(|object| &object.mesh);
+    mesh.filter(|mesh| !mesh.opacities.is_empty()).map_or([1.0; 3], |mesh| {
+        mesh.triangles[triangle.triangle as usize].map(|vertex| mesh.opacities[vertex as usize])
+    })
+}
+
+/// The factor on a surface's emission at texture coordinates, where the vertices have an opacity.
+fn emission_factor(material: &Material, uv: Vec2, vertex_opacity: f32) -> Vec3 {
     let picture = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
-    picture * material.opacity_at(uv)
+    picture * material.opacity_at(uv, vertex_opacity)
 }
 
 /// The materials that shine and that an object shows, with the names of their emitters.
@@ -329,9 +354,7 @@ fn kind_of(kind: &LightKind) -> u32 {
 fn record(kind: &LightKind) -> shaders::Light {
     let blank = shaders::Light { kind: kind_of(kind), strength: kind.strength().into(), ..Default::default() };
     match *kind {
-        LightKind::Sphere { center, radius, .. } => {
-            shaders::Light { position: center.into(), extent: radius, ..blank }
-        }
+        LightKind::Sphere { center, radius, .. } => shaders::Light { position: center.into(), extent: radius, ..blank },
         LightKind::Rectangle { .. } | LightKind::Disk { .. } => blank,
         LightKind::Point { position, .. } => shaders::Light { position: position.into(), ..blank },
         LightKind::Spot { position, direction, inner_angle, outer_angle, .. } => shaders::Light {

@@ -1,6 +1,6 @@
 //! Materials as the device knows them; docs/materials.md.
 
-use diacaustic_scene::{MaterialKind, SMOOTH, Scene};
+use diacaustic_scene::{Material, MaterialKind, SMOOTH, Scene, Textures};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::material_kind as kinds;
 use glam::Vec3;
@@ -14,30 +14,51 @@ use crate::{
 /// Steps of the quadrature over angles of incidence.
 const FRESNEL_STEPS: usize = 4096;
 
-/// The record of a material of the scene; `colored` says whether it is on a mesh with vertex colours.
+/// The record of a material of the scene, without what it is blended with; `colored` says whether it is on a mesh with vertex colours.
 pub(crate) fn material(scene: &Scene, index: usize, colored: bool) -> shaders::Material {
     let source = &scene.materials[index];
-    let kind = &source.kind;
-    let caster = if source.is_caster() { kinds::CASTER } else { 0 };
-    let receiver = if source.is_receiver() { kinds::RECEIVER } else { 0 };
-    let is_textured = source.textures.any() || colored;
-    let textured = if is_textured { kinds::TEXTURED } else { 0 };
-    let scattering = if is_textured { before_pictures(kind) } else { scattering(kind) };
-    let specular = match kind {
-        MaterialKind::Dielectric { .. } => [row_of(scene, index).map_or(-1.0, |row| row as f32), 0.0, 0.0],
-        _ => scattering.specular,
-    };
-    let mut record = shaders::Material {
-        specular,
-        kind: scattering.kind | caster | receiver | textured,
-        medium: medium_key(scene, index),
-        emission: source.emission.into(),
-        ..scattering
-    };
-    if let (Some(profile), MaterialKind::Dielectric { .. }) = (&scene.settings.paper, kind) {
+    let mut record = part(source, colored);
+    record.medium = medium_key(scene, index);
+    if let MaterialKind::Dielectric { .. } = source.kind {
+        record.specular = [row_of(scene, index).map_or(-1.0, |row| row as f32), 0.0, 0.0];
+    }
+    if let (Some(profile), MaterialKind::Dielectric { .. }) = (&scene.settings.paper, &source.kind) {
         paper::color_dielectric(profile, scene.ambient, &mut record);
     }
     record
+}
+
+/// The record of what a material is blended with, beside the material's own record.
+pub(crate) fn rest(rest: &Material, own: &shaders::Material, colored: bool) -> shaders::Material {
+    let record = part(rest, colored);
+    let group = own.kind >> kinds::GROUP_SHIFT << kinds::GROUP_SHIFT;
+    let kind = record.kind | group;
+    shaders::Material { kind, emission: own.emission, emission_pdf_area: own.emission_pdf_area, ..record }
+}
+
+/// What each blended material of the scene is in part, with the material's index; the emission's picture is that of the whole.
+pub(crate) fn rests(scene: &Scene) -> Vec<(usize, Material)> {
+    let with_emission = |material: &Material| {
+        let rest = material.rest()?;
+        let textures = Textures { emission: material.textures.emission.clone(), ..rest.textures.clone() };
+        Some(Material { textures, ..rest.clone() })
+    };
+    let materials = scene.materials.iter().enumerate();
+    materials.filter_map(|(index, material)| Some((index, with_emission(material)?))).collect()
+}
+
+fn part(source: &Material, colored: bool) -> shaders::Material {
+    let kind = &source.kind;
+    let caster = if source.is_caster_alone() { kinds::CASTER } else { 0 };
+    let receiver = if source.is_receiver_alone() { kinds::RECEIVER } else { 0 };
+    let is_textured = source.textures.any() || colored;
+    let textured = if is_textured { kinds::TEXTURED } else { 0 };
+    let scattering = if is_textured { before_pictures(kind) } else { scattering(kind) };
+    shaders::Material {
+        kind: scattering.kind | caster | receiver | textured,
+        emission: source.emission.into(),
+        ..scattering
+    }
 }
 
 /// What a material does to light, without its roles.
@@ -72,8 +93,8 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
             gloss: width(roughness),
             ..blank
         },
-        MaterialKind::ThinWalled { ior, tint } => {
-            shaders::Material { kind: kinds::THIN_WALLED, ior, tint: tint.into(), ..blank }
+        MaterialKind::ThinWalled { ior, tint, roughness } => {
+            shaders::Material { kind: kinds::THIN_WALLED, ior, tint: tint.into(), gloss: width(roughness), ..blank }
         }
         MaterialKind::Coated { albedo, ior, roughness } => shaders::Material {
             kind: kinds::COATED,
@@ -103,9 +124,9 @@ fn scattering(kind: &MaterialKind) -> shaders::Material {
 fn before_pictures(kind: &MaterialKind) -> shaders::Material {
     let derived = scattering(kind);
     match *kind {
-        MaterialKind::Conductor { roughness, .. } | MaterialKind::Dielectric { roughness, .. } => {
-            shaders::Material { gloss: roughness, ..derived }
-        }
+        MaterialKind::Conductor { roughness, .. }
+        | MaterialKind::Dielectric { roughness, .. }
+        | MaterialKind::ThinWalled { roughness, .. } => shaders::Material { gloss: roughness, ..derived },
         MaterialKind::Coated { albedo, roughness, .. } => {
             shaders::Material { base: albedo.into(), gloss: roughness, ..derived }
         }
@@ -116,10 +137,7 @@ fn before_pictures(kind: &MaterialKind) -> shaders::Material {
             gloss: roughness,
             ..derived
         },
-        MaterialKind::Diffuse { .. }
-        | MaterialKind::Phong { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::ThinWalled { .. } => derived,
+        MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } | MaterialKind::Mirror { .. } => derived,
     }
 }
 

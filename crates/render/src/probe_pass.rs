@@ -12,7 +12,8 @@ use crate::{
 
 /// The bindings of `shaders/layout/probe_pass.wgsl`.
 const BINDINGS: [Binding; 4] = [Binding::Uniform, Binding::Texels, Binding::Read, Binding::ReadWrite];
-const FOUND: Purpose = Purpose { what: "what the maps hold where the camera sees them", remedy: "lower width or height" };
+const FOUND: Purpose =
+    Purpose { what: "what the maps hold where the camera sees them", remedy: "lower width or height" };
 
 /// The pipeline that looks at maps.
 #[derive(Debug)]

@@ -296,8 +296,9 @@ impl Look<'_> {
     /// those count to which the maps bring a part that is worth looking at; what is dark beside these paths' mean counts as if it were
     /// brighter.
     fn relative_change(&self, before: &[Vec3]) -> f64 {
-        let is_lit =
-            |path: &usize| self.of_maps[*path].abs().element_sum() > 3.0 * LEAST_MAP_LIGHT * self.brightness(*path).abs();
+        let is_lit = |path: &usize| {
+            self.of_maps[*path].abs().element_sum() > 3.0 * LEAST_MAP_LIGHT * self.brightness(*path).abs()
+        };
         let lit: Vec<usize> = (0..self.of_maps.len().min(before.len())).filter(is_lit).collect();
         let count = lit.len().max(1) as f32;
         let mean = lit.iter().map(|&path| self.brightness(path)).sum::<f32>() / count;

@@ -1,7 +1,7 @@
 //! The scene on the device: bind group 0 of both passes.
 
 use bytemuck::Pod;
-use diacaustic_scene::{LightKind, Material, Scene};
+use diacaustic_scene::{LightKind, Scene};
 use diacaustic_shaders as shaders;
 use diacaustic_shaders::{material_kind, triangle_flag};
 use diacaustic_surface::{MapSquare, MapTiles, WorldTriangle};
@@ -16,7 +16,7 @@ use crate::{
     map_plan::MapPlan,
     map_records::map_records,
     map_sums::EnergyMaps,
-    material_records::material,
+    material_records::{material, rest, rests},
     spectra_records::spectra_record,
     texture_records::TextureRecords,
     vertex_color_records::{colored_materials, vertex_colors},
@@ -90,6 +90,9 @@ impl SceneBuffers {
         }
         let surfaces = scene.lights.iter().enumerate();
         materials.extend(surfaces.map(|(number, light)| light_surface(lights, number, &light.kind)));
+        for (whole, part) in rests(scene) {
+            materials.push(rest(&part, &materials[whole], colored[whole]));
+        }
         let pictures = TextureRecords::new(scene, &bvh.triangles);
         let mut uploader = Uploader { gpu, fingerprint: Fingerprint::default() };
         let textures = [
@@ -138,8 +141,10 @@ fn blank_tiles(plan: &MapPlan) -> MapTiles {
 }
 
 fn triangle(scene: &Scene, t: &WorldTriangle) -> shaders::Triangle {
-    // The surfaces of lights have materials beyond the scene's, and no holes.
-    let has_holes = scene.materials.get(t.material as usize).is_some_and(Material::has_holes);
+    // The surfaces of lights are objects and have materials beyond the scene's, and no holes.
+    let object = scene.objects.get(t.object as usize);
+    let has_holes = object.is_some_and(|object| object.has_holes(&scene.materials, t.material as usize));
+    let is_blended = scene.materials.get(t.material as usize).is_some_and(|material| material.blend.is_some());
     let flag = |applies: bool, flag: u32| if applies { flag } else { 0 };
     shaders::Triangle {
         corner: t.corners[0].into(),
@@ -147,7 +152,9 @@ fn triangle(scene: &Scene, t: &WorldTriangle) -> shaders::Triangle {
         edge_1: (t.corners[1] - t.corners[0]).into(),
         material: t.material,
         edge_2: (t.corners[2] - t.corners[0]).into(),
-        flags: flag(t.normals.is_some(), triangle_flag::SMOOTH) | flag(has_holes, triangle_flag::HAS_HOLES),
+        flags: flag(t.normals.is_some(), triangle_flag::SMOOTH)
+            | flag(has_holes, triangle_flag::HAS_HOLES)
+            | flag(is_blended, triangle_flag::BLENDED),
     }
 }
 

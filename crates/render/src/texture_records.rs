@@ -8,12 +8,14 @@ use diacaustic_shaders::{NONE, texture_flag as flags};
 use diacaustic_surface::WorldTriangle;
 use glam::Vec2;
 
+use crate::{material_records::rests, tangent_records::Tangents};
+
 /// What the kernels read of a scene's pictures. No part is empty, for a texture cannot be.
 #[derive(Debug)]
 pub(crate) struct TextureRecords {
     /// For each triangle; of a scene without pictures a single one.
     pub coordinates: Vec<shaders::TextureCoordinates>,
-    /// For each material, with those of the lights' surfaces.
+    /// For each material, with those of the lights' surfaces, and then of what materials are blended with.
     pub materials: Vec<shaders::MaterialTextures>,
     pub textures: Vec<shaders::SurfaceTexture>,
     /// Two texels in each entry; of a picture with an odd number of them the last stands alone.
@@ -24,13 +26,17 @@ impl TextureRecords {
     /// The records of a scene; `triangles` are those of the hierarchy.
     pub fn new(scene: &Scene, triangles: &[WorldTriangle]) -> Self {
         let mut pictures = Pictures::default();
-        let of_scene = scene.materials.iter().map(|material| pictures.of_material(material));
-        let of_lights = scene.lights.iter().map(|_| WITHOUT_TEXTURES);
-        let materials = of_scene.chain(of_lights).collect();
-        let are_used = scene.materials.iter().any(|material| material.textures.any());
+        let mut materials: Vec<_> = scene.materials.iter().map(|material| pictures.of_material(material)).collect();
+        materials.extend(scene.lights.iter().map(|_| WITHOUT_TEXTURES));
+        for (whole, rest) in rests(scene) {
+            materials[whole].rest = materials.len() as u32;
+            materials.push(pictures.of_material(&rest));
+        }
+        let are_used = scene.materials.iter().any(|material| material.all_textures().next().is_some());
         let shown = if are_used { triangles } else { &[] };
+        let tangents = Tangents::of(scene);
         Self {
-            coordinates: or_blank(shown.iter().map(coordinates).collect()),
+            coordinates: or_blank(shown.iter().map(|triangle| coordinates(triangle, &tangents)).collect()),
             materials,
             textures: or_blank(pictures.textures),
             texels: or_blank(pictures.texels),
@@ -49,16 +55,18 @@ const WITHOUT_TEXTURES: shaders::MaterialTextures = shaders::MaterialTextures {
     opacity: NONE,
     opacity_factor: 1.0,
     opacity_cutoff: -1.0,
-    padding: [0; 3],
+    rest: NONE,
+    share: 1.0,
+    share_picture: NONE,
 };
 
 fn or_blank<T: Default>(records: Vec<T>) -> Vec<T> {
     if records.is_empty() { vec![T::default()] } else { records }
 }
 
-fn coordinates(triangle: &WorldTriangle) -> shaders::TextureCoordinates {
+fn coordinates(triangle: &WorldTriangle, tangents: &Tangents<'_>) -> shaders::TextureCoordinates {
     let [a, b, c] = triangle.uvs.unwrap_or([Vec2::ZERO; 3]);
-    shaders::TextureCoordinates { uv_01: [a.x, a.y, b.x, b.y], uv_2: c.into(), padding: [0; 2] }
+    shaders::TextureCoordinates { uv_01: [a.x, a.y, b.x, b.y], uv_2: c.into(), tangents: tangents.record(triangle) }
 }
 
 /// Textures and texels met so far.
@@ -73,6 +81,7 @@ struct Pictures {
 impl Pictures {
     fn of_material(&mut self, material: &Material) -> shaders::MaterialTextures {
         let textures = &material.textures;
+        let share = material.blend.as_ref().and_then(|blend| blend.texture.as_ref());
         let mut index = |texture: &Option<Texture>| texture.as_ref().map_or(NONE, |texture| self.texture(texture));
         shaders::MaterialTextures {
             color: index(&textures.color),
@@ -84,7 +93,9 @@ impl Pictures {
             opacity: textures.opacity.as_ref().map_or(NONE, |texture| self.texture(texture)),
             opacity_factor: material.opacity,
             opacity_cutoff: material.opacity_cutoff.unwrap_or(-1.0),
-            padding: [0; 3],
+            rest: NONE,
+            share: material.blend.as_ref().map_or(1.0, |blend| blend.share),
+            share_picture: share.map_or(NONE, |texture| self.texture(texture)),
         }
     }
 

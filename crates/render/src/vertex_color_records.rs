@@ -1,9 +1,9 @@
-//! Colours at vertices as the device knows them; docs/materials.md, "Vertex colours".
+//! Colours and opacities at vertices as the device knows them; docs/materials.md, "Vertex colours".
 
 use diacaustic_scene::Scene;
 use diacaustic_shaders::VertexColors;
 use diacaustic_surface::WorldTriangle;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use half::f16;
 
 /// Whether each of the scene's materials is on a mesh with vertex colours.
@@ -15,9 +15,9 @@ pub(crate) fn colored_materials(scene: &Scene) -> Vec<bool> {
     colored
 }
 
-/// For each triangle of the hierarchy; of a scene without vertex colours a single one, for a texture cannot be empty.
+/// For each triangle of the hierarchy; of a scene without factors at vertices a single one, for a texture cannot be empty.
 pub(crate) fn vertex_colors(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<VertexColors> {
-    if !scene.has_vertex_colors() {
+    if !scene.has_vertex_factors() {
         return vec![VertexColors::default()];
     }
     triangles.iter().map(|triangle| of_triangle(scene, triangle)).collect()
@@ -26,15 +26,19 @@ pub(crate) fn vertex_colors(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<V
 fn of_triangle(scene: &Scene, triangle: &WorldTriangle) -> VertexColors {
     // The surfaces of lights are objects beyond the scene's.
     let mesh = scene.objects.get(triangle.object as usize).map(|object| &object.mesh);
-    let colors = mesh.filter(|mesh| !mesh.colors.is_empty()).map_or([Vec3::ONE; 3], |mesh| {
-        triangle.arrange(mesh.triangles[triangle.triangle as usize].map(|vertex| mesh.colors[vertex as usize]))
+    let factors = mesh.map_or([Vec4::ONE; 3], |mesh| {
+        let factor = |vertex: u32| {
+            let color = mesh.colors.get(vertex as usize).copied().unwrap_or(Vec3::ONE);
+            color.extend(mesh.opacities.get(vertex as usize).copied().unwrap_or(1.0))
+        };
+        triangle.arrange(mesh.triangles[triangle.triangle as usize].map(factor))
     });
-    let [color_0, color_1, color_2] = colors.map(packed);
+    let [color_0, color_1, color_2] = factors.map(packed);
     VertexColors { color_0, color_1, color_2, padding: [0; 2] }
 }
 
-/// Red and green, then blue, in half precision.
-fn packed(color: Vec3) -> [u32; 2] {
-    let [r, g, b] = color.to_array().map(|channel| u32::from(f16::from_f32(channel).to_bits()));
-    [r | g << 16, b]
+/// Red and green, then blue and opacity, in half precision.
+fn packed(factor: Vec4) -> [u32; 2] {
+    let [r, g, b, opacity] = factor.to_array().map(|channel| u32::from(f16::from_f32(channel).to_bits()));
+    [r | g << 16, b | opacity << 16]
 }

@@ -6,6 +6,7 @@ mod accessors;
 mod animations;
 mod buffers;
 mod container;
+mod curves;
 mod fault;
 mod instances;
 mod lights;
@@ -14,13 +15,14 @@ mod meshes;
 mod meshopt;
 mod nodes;
 mod options;
+mod pointers;
 mod pose;
 mod primitives;
 mod textures;
 mod variants;
 
 use std::{
-    collections::{BTreeSet, HashMap},
+    collections::{BTreeSet, HashMap, HashSet},
     fs,
     path::Path,
     sync::Arc,
@@ -35,7 +37,7 @@ use self::{
     fault::{Fault, Result, place, shortened},
     instances::read_instances,
     lights::{read_camera, read_light},
-    materials::MaterialReader,
+    materials::{MaterialReader, is_whole_on},
     meshes::{MOST_TRIANGLES, MeshReader, SlottedMesh},
     nodes::{Nodes, node_place, single},
     pose::Pose,
@@ -94,18 +96,20 @@ pub fn parse_gltf(bytes: &[u8], path: &Path, options: &GltfOptions) -> std::resu
 
 fn read(bytes: &[u8], path: &Path, folder: &Folder, options: &GltfOptions) -> Result<GltfFile> {
     let container = container::split(bytes)?;
-    let root = container::parse(container.json)?;
+    let (root, pointers) = container::parse(container.json)?;
     let unsupported = container::check_extensions(&root)?;
     let buffers = Buffers::read(&root, container.binary, folder)?;
-    let textures = TextureReader::new(&root, &buffers, folder);
+    let (posed, warnings) = pointers.posed(&root, &buffers, options)?.unzip();
+    let root = posed.as_ref().unwrap_or(&root);
+    let textures = TextureReader::new(root, &buffers, folder);
     let mut reader = Reader {
-        root: &root,
-        meshes: MeshReader::new(&root, &buffers, variants::variant(&root, options.variant.as_deref())?),
-        materials: MaterialReader::new(&root, textures),
-        nodes: Nodes::read(&root, motions(&root, &buffers, options)?)?,
+        root,
+        meshes: MeshReader::new(root, &buffers, variants::variant(root, options.variant.as_deref())?),
+        materials: MaterialReader::new(root, textures),
+        nodes: Nodes::read(root, motions(root, &buffers, &pointers, options)?)?,
         shared: HashMap::new(),
         triangles_left: MOST_TRIANGLES,
-        warnings: Vec::new(),
+        warnings: warnings.unwrap_or_default(),
         file: GltfFile::default(),
     };
     reader.read_nodes()?;
@@ -190,8 +194,8 @@ impl Reader<'_, '_> {
         }
         let user = node_place(self.root, node);
         let mesh_place = place("meshes", mesh, None);
-        let uv_set_of = |material| self.materials.uv_set(material, &mesh_place);
-        let read = self.meshes.read(mesh, pose, &user, uv_set_of)?.map(|slotted| self.with_materials(slotted));
+        let needs_of = |material| self.materials.needs(material, &mesh_place);
+        let read = self.meshes.read(mesh, pose, &user, needs_of)?.map(|slotted| self.with_materials(slotted));
         let read = read.transpose()?;
         if pose.is_plain() {
             self.shared.insert(mesh, read.clone());
@@ -215,8 +219,26 @@ impl Reader<'_, '_> {
         Ok((Arc::new(mesh), materials))
     }
 
+    /// Leaves out what materials are in part nowhere on the objects that use them.
+    fn drop_hidden_rests(&mut self) {
+        let materials = &mut self.materials.materials;
+        let mut shows_rest = vec![false; materials.len()];
+        let mut seen = HashSet::new();
+        for object in &self.file.objects {
+            for (slot, &index) in object.materials.iter().enumerate() {
+                let Some(blend) = materials[index].blend.as_ref().filter(|_| !shows_rest[index]) else { continue };
+                let is_new = seen.insert((Arc::as_ptr(&object.mesh), slot, index));
+                shows_rest[index] = is_new && !is_whole_on(blend, &object.mesh, slot);
+            }
+        }
+        for (material, shows_rest) in materials.iter_mut().zip(shows_rest) {
+            material.blend = material.blend.take().filter(|_| shows_rest);
+        }
+    }
+
     fn finish(mut self, unsupported: &[&str], path: &Path) -> GltfFile {
         number_names(&mut self.file.lights);
+        self.drop_hidden_rests();
         let mut faults = self.warnings;
         faults.extend(self.meshes.warnings);
         faults.extend(self.materials.warnings);
@@ -238,7 +260,7 @@ impl Reader<'_, '_> {
 /// Makes the names of lights differ.
 fn number_names(lights: &mut [Light]) {
     let mut counts = HashMap::<String, usize>::new();
-    let mut taken: std::collections::HashSet<_> = lights.iter().map(|light| light.name.clone()).collect();
+    let mut taken: HashSet<_> = lights.iter().map(|light| light.name.clone()).collect();
     let mut is_first: HashMap<String, bool> = HashMap::new();
     for light in lights {
         let base = light.name.clone();

@@ -16,7 +16,10 @@ impl Scene {
         let keeps_groups = self.output.layers.contains(&Layer::LightGroups) && self.light_groups().names.len() > 1;
         let obstacles = [
             (self.settings.paper.is_some(), "the profile \"paper\" has no light between diffuse surfaces"),
-            (self.settings.wavelength.is_some(), "the cache holds red, green and blue light, not that of the one wavelength"),
+            (
+                self.settings.wavelength.is_some(),
+                "the cache holds red, green and blue light, not that of the one wavelength",
+            ),
             (keeps_groups, "the cache does not keep light groups apart, as output.layers asks for"),
         ];
         obstacles.into_iter().find(|(stands, _)| *stands).map(|(_, obstacle)| obstacle)

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use crate::{Dispersion, Texture, Textures};
+use crate::{Dispersion, NormalMap, Texture, Textures};
 
 /// A named material.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +22,26 @@ pub struct Material {
     pub opacity_cutoff: Option<f32>,
     /// Pictures that modulate it.
     pub textures: Textures,
+    /// What else the surface is in part.
+    pub blend: Option<Box<Blend>>,
+}
+
+/// What a surface is where it is not its material: every ray takes the one or the other by chance, and so what surfaces do to light is the mean of both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blend {
+    /// Share of the light that meets the material itself, 0 to 1.
+    pub share: f32,
+    /// A picture that the share is multiplied by.
+    pub texture: Option<Texture>,
+    /// What the rest of the light meets. It is no dielectric and has no blend; emission and opacity are those of the material that it is blended with.
+    pub rest: Material,
+}
+
+impl Blend {
+    /// The share at texture coordinates `uv`.
+    pub fn share_at(&self, uv: Vec2) -> f32 {
+        self.share * self.texture.as_ref().map_or(1.0, |texture| texture.number_at(uv))
+    }
 }
 
 /// The scattering models, as `docs/materials.md` defines them. Colours are linear Rec. 709, per channel. `roughness` is that of
@@ -80,6 +100,8 @@ pub enum MaterialKind {
         ior: f32,
         /// Factor on light that passes, 0 to 1.
         tint: Vec3,
+        /// Roughness, by which what passes spreads as widely as what is reflected.
+        roughness: f32,
     },
     /// A Lambertian base under a clear coat (plastic, varnish), on both sides.
     Coated {
@@ -125,6 +147,7 @@ impl Material {
             opacity: 1.0,
             opacity_cutoff: None,
             textures,
+            blend: None,
         }
     }
 
@@ -133,6 +156,11 @@ impl Material {
     /// This and [`is_receiver`](Self::is_receiver) are the one place where this is decided, for both passes. A material can be both.
     /// Where a picture makes the roughness or the share of metal, its extreme decides for the whole material.
     pub fn is_caster(&self) -> bool {
+        self.is_caster_alone() || self.rest().is_some_and(Self::is_caster_alone)
+    }
+
+    /// The same of the material without what it is blended with.
+    pub fn is_caster_alone(&self) -> bool {
         match self.kind {
             MaterialKind::Mirror { .. }
             | MaterialKind::Dielectric { .. }
@@ -148,6 +176,11 @@ impl Material {
 
     /// Whether the material has a diffuse lobe: a *receiver*, whose object has an energy map.
     pub fn is_receiver(&self) -> bool {
+        self.is_receiver_alone() || self.rest().is_some_and(Self::is_receiver_alone)
+    }
+
+    /// The same of the material without what it is blended with.
+    pub fn is_receiver_alone(&self) -> bool {
         match self.kind {
             MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } | MaterialKind::Coated { .. } => true,
             MaterialKind::MetallicRoughness { metallic, .. } => self.least_metallic(metallic) < 1.0,
@@ -156,6 +189,22 @@ impl Material {
             | MaterialKind::ThinWalled { .. }
             | MaterialKind::Conductor { .. } => false,
         }
+    }
+
+    /// What it is blended with.
+    pub fn rest(&self) -> Option<&Self> {
+        self.blend.as_ref().map(|blend| &blend.rest)
+    }
+
+    /// Its pictures, with those of what it is blended with.
+    pub fn all_textures(&self) -> impl Iterator<Item = &Texture> {
+        let of_blend = self.blend.iter().flat_map(|blend| blend.texture.iter().chain(blend.rest.textures.iter()));
+        self.textures.iter().chain(of_blend)
+    }
+
+    /// Its normal map, or that of what it is blended with; both lie in the same way.
+    pub fn normal_map(&self) -> Option<&NormalMap> {
+        self.textures.normal.as_ref().or_else(|| self.rest()?.textures.normal.as_ref())
     }
 
     /// A dielectric's index of refraction at [`STATED_WAVELENGTH`](crate::STATED_WAVELENGTH) and how it changes; none if it does not.
@@ -172,9 +221,10 @@ impl Material {
         self.opacity_cutoff.map_or(least < 1.0, |cutoff| least < cutoff)
     }
 
-    /// Share of the light that meets the surface at texture coordinates `uv`.
-    pub fn opacity_at(&self, uv: Vec2) -> f32 {
-        let opacity = self.opacity * self.textures.opacity.as_ref().map_or(1.0, |texture| texture.number_at(uv));
+    /// Share of the light that meets the surface at texture coordinates `uv`, where the mesh's vertices have the opacity `of_vertices`, 1 without.
+    pub fn opacity_at(&self, uv: Vec2, of_vertices: f32) -> f32 {
+        let opacity =
+            of_vertices * self.opacity * self.textures.opacity.as_ref().map_or(1.0, |texture| texture.number_at(uv));
         match self.opacity_cutoff {
             Some(cutoff) => f32::from(u8::from(opacity >= cutoff)),
             None => opacity,

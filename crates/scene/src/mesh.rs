@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// The square of the length below which a normal is taken for a missing one.
 const SHORTEST_NORMAL_SQUARED: f32 = 1e-20;
@@ -27,6 +27,11 @@ pub struct Mesh {
     pub map_uvs: Vec<Vec2>,
     /// Factors on the material's colour, linear Rec. 709, 0 to 1 in each channel, one for each position, or empty.
     pub colors: Vec<Vec3>,
+    /// Factors on the material's opacity, 0 to 1, one for each position, or empty. Dielectrics take none of it.
+    pub opacities: Vec<f32>,
+    /// Unit tangents for normal maps, one for each position, or empty: xyz along u of `uvs`, and w, the side (1 or −1) of normal × tangent on
+    /// which v grows. Where one is 0, or there is none, they are [made](crate::Object::corner_tangents) of normals and texture coordinates.
+    pub tangents: Vec<Vec4>,
     /// Vertex indices of each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, its index into [`Mesh::material_slots`]; empty when there is one slot or none.
@@ -89,9 +94,14 @@ impl Mesh {
                     self.uvs.extend(self.uvs.get(vertex).copied());
                     self.map_uvs.extend(self.map_uvs.get(vertex).copied());
                     self.colors.extend(self.colors.get(vertex).copied());
+                    self.opacities.extend(self.opacities.get(vertex).copied());
+                    self.tangents.extend(self.tangents.get(vertex).map(|_| Vec4::ZERO));
                     self.normals.push(facet);
                 } else {
                     self.normals[vertex] = facet;
+                    if let Some(tangent) = self.tangents.get_mut(vertex) {
+                        *tangent = Vec4::ZERO;
+                    }
                 }
             }
         }

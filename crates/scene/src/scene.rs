@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine3A, Vec3};
 
-use crate::{Camera, Layer, Light, Material, Mesh, PaperProfile};
+use crate::{Camera, Layer, Light, Material, MaterialKind, Mesh, PaperProfile};
 
 /// Everything that a render depends on. Built by a reader of this crate or in code; [`Scene::validate`] checks it.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,13 +50,31 @@ impl Scene {
         self.settings.wavelength.is_some() || shown.any(|&index| self.materials[index].dispersion().is_some())
     }
 
-    /// Whether some mesh has colours at its vertices.
-    pub fn has_vertex_colors(&self) -> bool {
-        self.objects.iter().any(|object| !object.mesh.colors.is_empty())
+    /// Whether rays may pass some surface as if it were not there.
+    pub fn has_holes(&self) -> bool {
+        let has_holes =
+            |object: &Object| object.materials.iter().any(|&index| object.has_holes(&self.materials, index));
+        self.objects.iter().any(has_holes)
+    }
+
+    /// Whether some mesh has colours or opacities at its vertices.
+    pub fn has_vertex_factors(&self) -> bool {
+        let has_factors = |mesh: &Mesh| !mesh.colors.is_empty() || !mesh.opacities.is_empty();
+        self.objects.iter().any(|object| has_factors(&object.mesh))
     }
 }
 
 impl Object {
+    /// Whether rays may pass triangles of a material as if they were not there: by its opacity or by that of the mesh's vertices.
+    ///
+    /// # Panics
+    /// If the material is out of range.
+    pub fn has_holes(&self, materials: &[Material], material: usize) -> bool {
+        let material = &materials[material];
+        let is_solid = matches!(material.kind, MaterialKind::Dielectric { .. });
+        material.has_holes() || !self.mesh.opacities.is_empty() && !is_solid
+    }
+
     /// The index into [`Scene::materials`] of a triangle.
     ///
     /// # Panics

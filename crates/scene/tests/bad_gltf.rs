@@ -29,7 +29,13 @@ fn good() -> Builder {
     let joints = builder.accessor(json!({ "bufferView": joints, "componentType": 5121, "count": 4, "type": "VEC4" }));
     let weights = builder.floats("VEC4", &[1.0, 0.0, 0.0, 0.0].repeat(4));
     let places = builder.floats("VEC3", &[0.0; 6]);
+    let normals = builder.floats("VEC3", &[0.0, 0.0, 1.0].repeat(4));
+    let tangents = builder.floats("VEC4", &[1.0, 0.0, 0.0, 1.0].repeat(4));
+    let colors = builder.floats("VEC4", &[0.5; 16]);
     let json = &mut builder.json;
+    json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(normals);
+    json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(tangents);
+    json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(colors);
     json["meshes"][0]["primitives"][0]["material"] = json!(0);
     json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(uvs);
     json["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(joints);
@@ -105,6 +111,27 @@ fn faults() -> Vec<(&'static str, Value, &'static str)> {
         ("/bufferViews/0/byteStride", json!(0), "its byteStride is 0"),
         ("/bufferViews/0/byteStride", json!(usize::MAX), "accessors[0]: has 4 elements of 12 bytes"),
         ("/meshes/0/primitives/0/indices", json!(99), "names accessors[99]"),
+        (
+            "/meshes/0/primitives/0/attributes/TANGENT",
+            json!(1),
+            "accessors[1]: is of type Scalar, but meshes[0].primitives[0].TANGENT needs Vec4",
+        ),
+        ("/meshes/0/primitives/0/attributes/COLOR_0", json!(99), "COLOR_0: names accessors[99]"),
+        (
+            "/meshes/0/primitives/0/targets/0/TANGENT",
+            json!(99),
+            "meshes[0].primitives[0].targets[0]: names accessors[99]",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_transmission/transmissionTexture",
+            json!({ "index": 9 }),
+            "transmissionTexture: names textures[9]",
+        ),
+        (
+            "/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor",
+            json!(2),
+            "materials[0]: has 2 as its clearcoatFactor; it must be from 0 to 1",
+        ),
         ("/meshes/0/primitives/0/mode", json!(7), "meshes[0].primitives[0]: has an unknown mode"),
         ("/meshes/0/primitives/0/material", json!(3), "names materials[3], but the file has 1 materials"),
         ("/meshes/0/primitives/0/attributes", json!({}), "meshes[0].primitives[0]: has no POSITION"),

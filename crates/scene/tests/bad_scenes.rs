@@ -296,7 +296,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "ior = 1.5",
         "iro = 1.5",
-        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, tint, roughness, normal, ior, substance, cauchy, sellmeier, abbe, dispersion, absorption, priority"#,
+        r#"x.toml:25:1: [materials.glass]: unknown key "iro"; did you mean "ior"? Known keys: type, tint, roughness, normal, ior, substance, cauchy, sellmeier, abbe, dispersion, absorption, priority, share, rest"#,
     ),
     (
         "ior = 1.5",
@@ -342,7 +342,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "albedo = 0.8",
         "albedo = 0.8\nior = 1.5",
-        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo, emission, normal, opacity, group"#,
+        r#"x.toml:31:1: [materials.floor]: unknown key "ior"; known keys: type, albedo, emission, normal, opacity, group, share, rest"#,
     ),
     (
         "albedo = 0.8",

@@ -4,7 +4,7 @@ mod gltf_file;
 
 use std::{fs, path::Path};
 
-use diacaustic_scene::{GltfFile, GltfOptions, load_scene, parse_gltf};
+use diacaustic_scene::{GltfFile, GltfOptions, LightKind, MaterialKind, load_scene, parse_gltf};
 use glam::{Quat, Vec3};
 use gltf_file::{Builder, TETRAHEDRON};
 use serde_json::{Value, json};
@@ -151,6 +151,81 @@ fn faults_of_animations_are_named() {
     assert!(read(&builder, Some(0.5), None).unwrap_err().contains("not finite at 0.5 s"));
     add_animation(&mut builder, "b", "translation", "LINEAR", &[1.0, 0.0], &[0.0; 6]);
     assert!(read(&builder, None, Some("b")).unwrap_err().contains("do not rise"));
+}
+
+/// Adds a channel to the first animation, or makes it, that sets what a pointer names.
+fn add_pointer(builder: &mut Builder, pointer: &str, kind: &str, times: &[f32], values: &[f32]) {
+    if builder.json["animations"].is_null() {
+        builder.json["animations"] = json!([{ "channels": [], "samplers": [] }]);
+    }
+    let (input, output) = (builder.floats("SCALAR", times), builder.floats(kind, values));
+    let animation = &mut builder.json["animations"][0];
+    let sampler = animation["samplers"].as_array().unwrap().len();
+    let target = json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": pointer } } });
+    animation["channels"].as_array_mut().unwrap().push(json!({ "sampler": sampler, "target": target }));
+    animation["samplers"].as_array_mut().unwrap().push(json!({ "input": input, "output": output }));
+    builder.json["extensionsUsed"] = json!(["KHR_animation_pointer"]);
+    builder.json["extensionsRequired"] = json!(["KHR_animation_pointer"]);
+}
+
+#[test]
+fn pointers_set_nodes_materials_lights_and_cameras() {
+    let mut builder = Builder::tetrahedron();
+    let light = json!({ "type": "point", "intensity": 683 });
+    builder.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+    builder.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 1 } }]);
+    builder.json["nodes"] =
+        json!([{ "mesh": 0 }, { "extensions": { "KHR_lights_punctual": { "light": 0 } } }, { "camera": 0 }]);
+    builder.json["materials"] = json!([{}]);
+    builder.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let times = [0.0, 2.0];
+    add_animation(&mut builder, "all", "scale", "LINEAR", &times, &[1.0, 1.0, 1.0, 3.0, 3.0, 3.0]);
+    let half_turn = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0];
+    add_pointer(&mut builder, "/nodes/0/rotation", "VEC4", &times, &half_turn);
+    let color = "/materials/0/pbrMetallicRoughness/baseColorFactor";
+    // A spline may swing beyond what is allowed; a line that does stands for it.
+    add_pointer(&mut builder, color, "VEC4", &times, &[0.0, 0.5, 0.0, 1.0, 1.0, 0.5, 4.0, 1.0]);
+    add_pointer(&mut builder, "/materials/0/extensions/KHR_materials_ior/ior", "SCALAR", &times, &[1.5, 2.5]);
+    add_pointer(&mut builder, "/extensions/KHR_lights_punctual/lights/0/intensity", "SCALAR", &times, &[683.0, 2049.0]);
+    add_pointer(&mut builder, "/cameras/0/perspective/yfov", "SCALAR", &times, &[1.0, 2.0]);
+    let file = read(&builder, Some(1.0), None).unwrap();
+    assert_eq!(file.warnings, []);
+    let found = file.objects[0].world_from_object.transform_point3(Vec3::X);
+    assert!(found.abs_diff_eq(Vec3::new(0.0, 2.0, 0.0), 1e-6), "{found}");
+    let MaterialKind::MetallicRoughness { base_color, reflectance, .. } = file.materials[0].kind else {
+        panic!("{:?}", file.materials[0].kind)
+    };
+    assert_eq!(base_color, Vec3::new(0.5, 0.5, 1.0));
+    assert!((reflectance.x - (1.0f32 / 3.0).powi(2)).abs() < 1e-6, "{reflectance}");
+    let LightKind::Point { flux, .. } = file.lights[0].kind else { panic!("{:?}", file.lights[0].kind) };
+    assert!((flux.x - 8.0 * std::f32::consts::PI).abs() < 1e-4, "{flux}");
+    assert!((file.cameras[0].camera.vertical_fov - 1.5f32.to_degrees()).abs() < 1e-4);
+    // At rest nothing moves, and nothing is said.
+    let rest = read(&builder, None, None).unwrap();
+    assert_eq!((rest.objects[0].world_from_object.transform_point3(Vec3::X), rest.warnings), (Vec3::X, vec![]));
+}
+
+#[test]
+fn pointers_that_lead_nowhere_are_named() {
+    let mut builder = Builder::tetrahedron();
+    builder.json["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+    let nowhere = ["/nodes/0/children", "/nodes/9/translation", "/nodes/0/scale", "/materials/0/alphaCutoff"];
+    for pointer in nowhere {
+        let kind = if pointer.ends_with("Cutoff") { "SCALAR" } else { "VEC3" };
+        add_pointer(&mut builder, pointer, kind, &[0.0], if kind == "SCALAR" { &[1.0] } else { &[1.0; 3] });
+    }
+    let file = read(&builder, Some(0.0), None).unwrap();
+    let said: String = file.warnings.iter().map(|warning| format!("{warning}\n")).collect();
+    for (number, pointer) in nowhere.into_iter().enumerate() {
+        assert!(
+            said.contains(&format!("a.glb: animations[0].channels[{number}]: animates {pointer:?}, which")),
+            "{said}"
+        );
+    }
+    let mut builder = Builder::tetrahedron();
+    add_pointer(&mut builder, "/nodes/0/scale", "SCALAR", &[0.0], &[1.0]);
+    let error = read(&builder, Some(0.0), None).unwrap_err();
+    assert!(error.contains("is of type Scalar, but animations[0].channels[0] needs Vec3"), "{error}");
 }
 
 #[test]

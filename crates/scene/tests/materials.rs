@@ -74,8 +74,8 @@ fn every_type_is_read_with_all_keys() {
             priority: -3
         }
     );
-    let thin_walled = "type = 'thin_walled'\nior = 1.4\ntint = [0.2, 0.4, 0.6]";
-    assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color });
+    let thin_walled = "type = 'thin_walled'\nior = 1.4\ntint = [0.2, 0.4, 0.6]\nroughness = 0.25";
+    assert_eq!(material(thin_walled).kind, MaterialKind::ThinWalled { ior: 1.4, tint: color, roughness: 0.25 });
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn omitted_keys_have_defaults() {
                 priority: 0,
             },
         ),
-        ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }),
+        ("type = 'thin_walled'", MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 }),
         ("type = 'coated'\nalbedo = 1", MaterialKind::Coated { albedo: Vec3::ONE, ior: 1.5, roughness: 0.0 }),
         (
             "type = 'metallic_roughness'",
@@ -135,7 +135,7 @@ fn names_stand_for_measured_data() {
     );
     assert_eq!(
         material("type = 'thin_walled'\nsubstance = 'amber'").kind,
-        MaterialKind::ThinWalled { ior: amber.ior, tint: Vec3::ONE }
+        MaterialKind::ThinWalled { ior: amber.ior, tint: Vec3::ONE, roughness: 0.0 }
     );
     for known in METALS {
         let read = material(&format!("type = 'conductor'\nmetal = '{}'", known.name)).kind;
@@ -154,6 +154,16 @@ fn names_are_unique_and_documented() {
         assert!(seen.insert(name), "{name} stands twice");
         assert!(page.contains(&format!("`\"{name}\"`")), "docs/scene-file.md must list {name}");
     }
+}
+
+#[test]
+fn a_material_may_be_another_in_part() {
+    let own = "type = 'thin_walled'\nshare = 0.25\nrest = 'n'";
+    let found = material(&format!("{own}\n[materials.n]\ntype = 'diffuse'\nalbedo = 0.5"));
+    let blend = found.blend.as_ref().unwrap();
+    assert_eq!((blend.share, &blend.texture, blend.rest.name.as_str()), (0.25, &None, "n"));
+    assert_eq!(blend.rest.kind, MaterialKind::Diffuse { albedo: Vec3::splat(0.5) });
+    assert!(found.is_caster() && found.is_receiver() && !found.is_receiver_alone());
 }
 
 #[test]
@@ -195,9 +205,34 @@ fn faults_are_named() {
             "type = 'thin_walled'\nemission = 1",
             "[materials.m]: emission is set, but glass takes no emission; leave it out, or use another material type",
         ),
+        ("type = 'thin_walled'\nroughness = 1.5", "material \"m\": roughness is 1.5; it must be from 0 to 1"),
         (
-            "type = 'thin_walled'\nroughness = 0.5",
-            "[materials.m]: unknown key \"roughness\"; known keys: type, tint, normal, opacity, ior, substance",
+            "type = 'mirror'\nreflectance = 1\nshare = 0.5",
+            "[materials.m]: the key \"rest\" is missing; it takes the name of the material that the rest of the light meets",
+        ),
+        (
+            "type = 'mirror'\nreflectance = 1\nrest = 'n'",
+            "[materials.m]: the key \"share\" is missing; it takes the share of the light, from 0 to 1, that meets this material",
+        ),
+        (
+            "type = 'mirror'\nreflectance = 1\nshare = 0.5\nrest = 'n'",
+            "[materials.m]: rest: there is no material \"n\"",
+        ),
+        (
+            "type = 'mirror'\nreflectance = 1\nshare = 2\nrest = 'n'\n[materials.n]\ntype = 'diffuse'\nalbedo = 1",
+            "material \"m\": share is 2; it must be from 0 to 1",
+        ),
+        (
+            "type = 'mirror'\nreflectance = 1\nshare = 0.5\nrest = 'n'\n[materials.n]\ntype = 'dielectric'\nior = 1.5",
+            "material \"m\": rest is the material \"n\", which is a dielectric",
+        ),
+        (
+            "type = 'thin_walled'\nshare = 0.5\nrest = 'n'\n[materials.n]\ntype = 'diffuse'\nalbedo = 1\nemission = 1",
+            "material \"m\": rest is the material \"n\", which has an emission",
+        ),
+        (
+            "type = 'thin_walled'\nshare = 0.5\nrest = 'n'\n[materials.n]\ntype = 'diffuse'\nalbedo = 1\nopacity = 0.5",
+            "material \"m\": rest is the material \"n\", which has an opacity",
         ),
         (
             "type = 'conductor'",

@@ -67,7 +67,7 @@ fn pbr_keys_make_pbr_materials() {
 #[test]
 fn glass_is_thin_where_the_mesh_is_open_and_opacity_is_what_d_says() {
     let (sheet, said) = material("d 0.1\nNi 1.4\nKd 1 0.5 1\n");
-    assert_eq!(sheet.kind, MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0) });
+    assert_eq!(sheet.kind, MaterialKind::ThinWalled { ior: 1.4, tint: Vec3::new(1.0, 0.5, 1.0), roughness: 0.0 });
     assert!(said.contains("is glass on a surface that is not closed"), "{said}");
     // Some exporters write Tr the other way round, beside a right d.
     assert!(matches!(material("d 1\nTr 1\n").0.kind, MaterialKind::Diffuse { .. }));
@@ -187,6 +187,11 @@ fn faults_of_odd_files_are_named() {
         let message = error(&text);
         assert!(message.starts_with("m.obj") && message.contains(problem), "{message}");
     }
+    let empty: String = (0..1_000_000).map(|number| format!("o part{number}\ng g{number}\n")).collect();
+    let sound = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{empty}f 1 2 3\n");
+    let read = parse_obj(sound.as_bytes(), Path::new("m.obj"), &MeshOptions::default()).unwrap();
+    assert_eq!((read.mesh.triangles.len(), read.mesh.material_slots.len()), (1, 0));
+    assert!(error(empty.as_bytes()).contains("m.obj: the file has no faces"));
     let many: String = (0..20_000).map(|number| format!("usemtl m{number}\nf 1 1 1\n")).collect();
     let message = error(format!("v 0 0 0\n{many}").as_bytes());
     assert!(message.contains("f with one more than 16384 materials"), "{message}");

@@ -387,10 +387,13 @@ fn materials_out_of_range_are_refused() {
             "roughness is -0.1; it must be from 0 to 1".to_owned(),
         ),
         (
-            MaterialKind::ThinWalled { ior: 0.0, tint: half },
+            MaterialKind::ThinWalled { ior: 0.0, tint: half, roughness: 0.0 },
             "ior is 0; it must be finite and greater than 0".to_owned(),
         ),
-        (MaterialKind::ThinWalled { ior: 1.5, tint: 3.0 * half }, format!("tint is [1.5, 1.5, 1.5]; {to_1}")),
+        (
+            MaterialKind::ThinWalled { ior: 1.5, tint: 3.0 * half, roughness: 0.0 },
+            format!("tint is [1.5, 1.5, 1.5]; {to_1}"),
+        ),
         (
             MaterialKind::Coated { albedo: half, ior: 0.9, roughness },
             "ior is 0.9; it must be 1 or greater and finite".to_owned(),
@@ -442,7 +445,7 @@ fn emission_is_finite_and_not_of_glass() {
     let of_glass = "material \"glass\": emission is [0, 0, 2], but glass takes no emission; it must be 0";
     assert_eq!(error(|s| s.materials[0].emission.z = 2.0), of_glass);
     let pane = |s: &mut Scene| {
-        s.materials[0].kind = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
+        s.materials[0].kind = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 };
         s.materials[0].emission.z = 2.0;
     };
     assert_eq!(error(pane), of_glass);

@@ -145,7 +145,8 @@ fn describe_material(material: &Material) -> String {
         (false, _) => "receives light",
     };
     let shines = if material.is_emissive() { ", shines" } else { "" };
-    format!("  {}: {kind}; {role}{shines}", material.name)
+    let blend = if material.blend.is_some() { ", in part another material" } else { "" };
+    format!("  {}: {kind}{blend}; {role}{shines}", material.name)
 }
 
 fn describe_light(kind: &LightKind) -> String {

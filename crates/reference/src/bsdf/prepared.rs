@@ -24,8 +24,8 @@ impl<'a> PreparedMaterial<'a> {
         let Textures { color, roughness, metallic, .. } = &material.textures;
         Self {
             material,
-            is_caster: material.is_caster(),
-            is_receiver: material.is_receiver(),
+            is_caster: material.is_caster_alone(),
+            is_receiver: material.is_receiver_alone(),
             has_holes: material.has_holes(),
             varies: color.is_some() || roughness.is_some() || metallic.is_some(),
             entering: match material.kind {

@@ -143,6 +143,11 @@ impl Surface {
                 Some(direction) => Bounce { direction, transmitted: true, straight: false, weight: tint, eta },
                 None => Bounce::reflected(direction, m, DVec3::ONE),
             },
+            // A rough wall turns what passes as what it reflects, seen in it as in a mirror.
+            Specular::ThinWalled { tint, .. } if self.microfacets.is_some() => {
+                let direction = reflect(reflect(direction, m), n);
+                Bounce { direction, transmitted: true, straight: false, weight: tint, eta: 1.0 }
+            }
             Specular::ThinWalled { tint, .. } => {
                 Bounce { direction, transmitted: true, straight: true, weight: tint, eta: 1.0 }
             }
@@ -268,7 +273,7 @@ mod tests {
 
     #[test]
     fn thin_wall_reflects_with_all_inner_reflections_and_passes_straight() {
-        let wall = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE };
+        let wall = MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 };
         let (leaning, d) = (DVec3::new(0.1, 0.0, 1.0).normalize(), DVec3::new(0.6, 0.0, -0.8));
         let f = crate::fresnel::reflectance(-d.dot(leaning), 1.0 / 1.5);
         let share = 2.0 * f / (1.0 + f);

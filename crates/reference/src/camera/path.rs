@@ -148,6 +148,7 @@ impl<'a> Walk<'a> {
 
     /// Passes a caster, or says what receives.
     fn meet_surface(&mut self, hit: &Hit, generator: &mut Generator) -> Option<Receiver> {
+        let hit = &self.world.taken(hit, || generator.unit());
         let facing = self.world.facing(hit, self.ray.direction);
         self.surfaces += 1;
         self.departure = Departure::Triangle(hit.triangle);

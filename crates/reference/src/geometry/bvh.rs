@@ -228,6 +228,8 @@ mod tests {
                     normals: None,
                     uvs: None,
                     colors: None,
+                    opacities: None,
+                    tangents: None,
                 }
             })
             .collect()
@@ -278,6 +280,8 @@ mod tests {
                     normals: None,
                     uvs: None,
                     colors: None,
+                    opacities: None,
+                    tangents: None,
                 }
             })
             .collect();

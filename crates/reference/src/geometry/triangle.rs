@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul};
 
 use diacaustic_scene::{Object, Scene};
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec4Swizzles};
 
 use super::{Hit, Ray};
 
@@ -28,6 +28,10 @@ pub struct Triangle {
     pub uvs: Option<[DVec2; 3]>,
     /// Factors on the material's colour at the corners, or none on a mesh without vertex colours.
     pub colors: Option<[DVec3; 3]>,
+    /// Factors on the material's opacity at the corners, or none on a mesh without.
+    pub opacities: Option<[f64; 3]>,
+    /// Of a triangle with a normal map, unit tangents at the corners along its picture's s, and their side.
+    pub tangents: Option<([DVec3; 3], f64)>,
 }
 
 /// A surface point as a ray sees it: every normal is on the side that the ray comes from.
@@ -94,20 +98,22 @@ impl Facet {
             return None;
         }
         let barycentric = DVec3::new(1.0 - u - v, u, v);
-        Some(Hit { triangle: self.triangle, distance: edge_2.dot(q) / determinant, barycentric })
+        let distance = edge_2.dot(q) / determinant;
+        Some(Hit { triangle: self.triangle, distance, barycentric, takes_rest: false })
     }
 }
 
 /// Every triangle of the scene, in the order of the objects and of their meshes.
 pub(super) fn flatten(scene: &Scene) -> Vec<Triangle> {
-    scene.objects.iter().enumerate().flat_map(|(object, placed)| flatten_object(object, placed)).collect()
+    scene.objects.iter().enumerate().flat_map(|(object, placed)| flatten_object(scene, object, placed)).collect()
 }
 
-fn flatten_object(object: usize, placed: &Object) -> Vec<Triangle> {
+fn flatten_object(scene: &Scene, object: usize, placed: &Object) -> Vec<Triangle> {
     let mesh = &placed.mesh;
     let world_from_object = placed.world_from_object.as_daffine3();
     let outward = world_from_object.matrix3.determinant().signum();
     let normal_from_object: DMat3 = world_from_object.matrix3.inverse().transpose();
+    let tangents = placed.corner_tangents(&scene.materials);
     let place = |index: usize| {
         let corners = mesh.corners(index).map(|p| world_from_object.transform_point3(p.as_dvec3()));
         let [a, b, c] = corners;
@@ -118,7 +124,15 @@ fn flatten_object(object: usize, placed: &Object) -> Vec<Triangle> {
         });
         let uvs = (!mesh.uvs.is_empty()).then(|| mesh.triangles[index].map(|v| mesh.uvs[v as usize].as_dvec2()));
         let colors = mesh.colors.first().map(|_| mesh.triangles[index].map(|v| mesh.colors[v as usize].as_dvec3()));
-        Triangle { object, index, corners, normal_geometric, normals, uvs, colors }
+        let opacities =
+            mesh.opacities.first().map(|_| mesh.triangles[index].map(|v| f64::from(mesh.opacities[v as usize])));
+        let tangents = tangents.get(index).and_then(|corners| {
+            let along =
+                corners.map(|tangent| (world_from_object.matrix3 * tangent.xyz().as_dvec3()).normalize_or_zero());
+            let is_there = along.iter().all(|tangent| *tangent != DVec3::ZERO);
+            is_there.then_some((along, outward * f64::from(corners[0].w)))
+        });
+        Triangle { object, index, corners, normal_geometric, normals, uvs, colors, opacities, tangents }
     };
     (0..mesh.triangles.len()).map(place).collect()
 }
@@ -138,7 +152,8 @@ mod tests {
 
     fn triangle(normals: Option<[DVec3; 3]>) -> Triangle {
         let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
-        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals, uvs: None, colors: None }
+        let (uvs, colors, opacities, tangents) = (None, None, None, None);
+        Triangle { object: 0, index: 0, corners, normal_geometric: DVec3::Z, normals, uvs, colors, opacities, tangents }
     }
 
     #[test]

@@ -31,6 +31,7 @@ pub(super) fn fly(world: &World, start: Start, generator: &mut Generator) -> Opt
     let mut casters = 0;
     loop {
         let Some(Meeting::Surface(hit)) = world.meet(&ray, departure) else { return None };
+        let hit = world.taken(&hit, || generator.unit());
         kept *= world.dielectrics().transmittance(&media, hit.distance, &spectrum);
         let facing = world.facing(&hit, ray.direction);
         if spectrum == Spectrum::Whole && Crossing::disperses(world, &hit, &facing, media) {

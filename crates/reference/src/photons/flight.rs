@@ -144,6 +144,7 @@ impl Flight<'_> {
     /// Goes on from a caster; ends on a receiver.
     fn meet_surface(&mut self, hit: &Hit) -> Option<End> {
         let world = self.job.world;
+        let hit = &world.taken_by(&self.ray, hit);
         self.attenuate(world.dielectrics().transmittance(&self.media, hit.distance, &self.spectrum));
         let facing = world.facing(hit, self.ray.direction);
         let is_first = self.spectrum == Spectrum::Whole && Crossing::disperses(world, hit, &facing, self.media);

@@ -169,5 +169,5 @@ pub fn parallel(direction: Vec3) -> Light {
 
 /// A clear sheet of glass.
 pub fn pane() -> MaterialKind {
-    MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE }
+    MaterialKind::ThinWalled { ior: 1.5, tint: Vec3::ONE, roughness: 0.0 }
 }

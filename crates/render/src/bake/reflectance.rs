@@ -10,6 +10,13 @@ use crate::material_records::{mean_reflectance, reflectance, under_coat};
 /// lightmap holds E shows about this share of E/π. It is exact for matt surfaces; a gloss over the base takes a share that depends on
 /// directions, which a lightmap does not know, and shows nothing of its own. 0 for what is no receiver.
 pub fn base_reflectance(material: &Material, uv: Vec2, vertex_color: Vec3) -> Vec3 {
+    let own = base_reflectance_alone(material, uv, vertex_color);
+    let Some(blend) = &material.blend else { return own };
+    base_reflectance_alone(&blend.rest, uv, vertex_color).lerp(own, blend.share_at(uv))
+}
+
+/// The same without what the material is blended with.
+fn base_reflectance_alone(material: &Material, uv: Vec2, vertex_color: Vec3) -> Vec3 {
     let textures = &material.textures;
     let picture = vertex_color * textures.color.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
     match material.kind {

@@ -130,7 +130,11 @@ impl Level {
 
 /// The nodes of the next level around one along an axis, and their weights.
 fn parents(index: usize) -> [(usize, f64); 2] {
-    if index.is_multiple_of(2) { [(index / 2, 1.0), (index / 2, 0.0)] } else { [(index / 2, 0.5), (index / 2 + 1, 0.5)] }
+    if index.is_multiple_of(2) {
+        [(index / 2, 1.0), (index / 2, 0.0)]
+    } else {
+        [(index / 2, 0.5), (index / 2 + 1, 0.5)]
+    }
 }
 
 /// The values at a grid's nodes: each by what paths found around it, and as far as these are fewer than `fewest`, by what they found around
@@ -192,7 +196,10 @@ mod tests {
     fn even_light_is_even_whatever_the_paths() {
         let seen = (0..GRID.nodes()).map(|node| found((node % 5) as f64, 3.0)).collect();
         for node in values(&GRID, seen, 6.0).unwrap() {
-            assert!((node.irradiance[0] - 3.0).abs() < 1e-12 && (node.inverse_distance - 2.0).abs() < 1e-12, "{node:?}");
+            assert!(
+                (node.irradiance[0] - 3.0).abs() < 1e-12 && (node.inverse_distance - 2.0).abs() < 1e-12,
+                "{node:?}"
+            );
         }
     }
 

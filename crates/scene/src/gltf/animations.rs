@@ -6,21 +6,17 @@ use glam::{Quat, Vec3};
 use gltf_json::{
     Root,
     accessor::Type,
-    animation::{Animation, Channel, Interpolation, Property, Sampler},
+    animation::{Animation, Channel, Property},
     validation::Checked,
 };
 
 use super::{
-    accessors::Accessor,
     buffers::Buffers,
+    curves::{CurveReader, KeysLeft},
     fault::{Fault, Result, entry, place},
     options::GltfOptions,
+    pointers::Pointers,
 };
-
-/// The most key frames of an animation, over all its channels.
-const MOST_KEYS: usize = 1 << 24;
-/// The most numbers of a key frame: as many as a mesh may have morph targets.
-const MOST_NUMBERS: usize = 1 << 16;
 
 /// What an animation sets of a node, in place of what the node states.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,42 +30,49 @@ pub(super) struct Motion {
 }
 
 /// The motions of nodes at the time that the options name; none at rest.
-pub(super) fn motions(root: &Root, buffers: &Buffers<'_>, options: &GltfOptions) -> Result<HashMap<usize, Motion>> {
+pub(super) fn motions(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    pointers: &Pointers,
+    options: &GltfOptions,
+) -> Result<HashMap<usize, Motion>> {
+    let Some((index, animation, time)) = chosen(root, options)? else { return Ok(HashMap::new()) };
+    let place = place("animations", index, animation.name.as_deref());
+    let mut motions = HashMap::<usize, Motion>::new();
+    let mut keys_left = KeysLeft::all();
+    for (number, channel) in animation.channels.iter().enumerate() {
+        if pointers.has(index, number) {
+            continue;
+        }
+        let place = format!("{place}.channels[{number}]");
+        let node = channel.target.node.value();
+        entry(&root.nodes, "nodes", node, &place)?;
+        let sampler = entry(&animation.samplers, "samplers", channel.sampler.value(), &place)?;
+        keys_left.take(root, sampler, &place)?;
+        let curves = CurveReader { root, buffers, sampler, place: &place };
+        read_channel(&curves, channel, time, motions.entry(node).or_default())?;
+    }
+    Ok(motions)
+}
+
+/// The animation that the options ask for, its index, and the time; none at rest.
+pub(super) fn chosen<'a>(root: &'a Root, options: &GltfOptions) -> Result<Option<(usize, &'a Animation, f32)>> {
     if options.time.is_none() && options.animation.is_none() {
-        return Ok(HashMap::new());
+        return Ok(None);
     }
     let time = options.time.unwrap_or(0.0);
     if !time.is_finite() {
         return Err(Fault::of_file(format!("the time {time} was asked for; it must be a finite number of seconds")));
     }
-    let (index, animation) = chosen(root, options.animation.as_deref())?;
-    let place = place("animations", index, animation.name.as_deref());
-    let mut motions = HashMap::<usize, Motion>::new();
-    let mut keys_left = MOST_KEYS;
-    for (number, channel) in animation.channels.iter().enumerate() {
-        let place = format!("{place}.channels[{number}]");
-        let node = channel.target.node.value();
-        entry(&root.nodes, "nodes", node, &place)?;
-        let sampler = entry(&animation.samplers, "samplers", channel.sampler.value(), &place)?;
-        let keys = entry(&root.accessors, "accessors", sampler.input.value(), &place)?.count.0;
-        let left = usize::try_from(keys).ok().and_then(|keys| keys_left.checked_sub(keys));
-        keys_left = left.ok_or_else(|| {
-            Fault::new(
-                &place,
-                format!("brings the animation to more than {MOST_KEYS} key frames, the most that are read"),
-            )
-        })?;
-        let curves = CurveReader { root, buffers, sampler, place: &place };
-        curves.read_channel(channel, time, motions.entry(node).or_default())?;
-    }
-    Ok(motions)
+    let (index, animation) = named(root, options.animation.as_deref())?;
+    Ok(Some((index, animation, time)))
 }
 
 /// The animation of a name, or else of a number; the first without a choice.
-fn chosen<'a>(root: &'a Root, choice: Option<&str>) -> Result<(usize, &'a Animation)> {
-    let named = |choice: &str| root.animations.iter().position(|animation| animation.name.as_deref() == Some(choice));
+fn named<'a>(root: &'a Root, choice: Option<&str>) -> Result<(usize, &'a Animation)> {
+    let of_name = |choice: &str| root.animations.iter().position(|animation| animation.name.as_deref() == Some(choice));
     let index = match choice {
-        Some(choice) => named(choice).or_else(|| choice.parse().ok()),
+        Some(choice) => of_name(choice).or_else(|| choice.parse().ok()),
         None => Some(0),
     };
     let found = index.and_then(|index| Some((index, root.animations.get(index)?)));
@@ -87,153 +90,16 @@ fn chosen<'a>(root: &'a Root, choice: Option<&str>) -> Result<(usize, &'a Animat
     })
 }
 
-/// Reads the key frames of a channel.
-struct CurveReader<'a, 'b> {
-    root: &'a Root,
-    buffers: &'a Buffers<'b>,
-    sampler: &'a Sampler,
-    place: &'a str,
-}
-
-impl<'a> CurveReader<'a, '_> {
-    fn read_channel(&self, channel: &Channel, time: f32, motion: &mut Motion) -> Result<()> {
-        let Checked::Valid(property) = channel.target.path else {
-            let problem = "has an unknown path; it must be translation, rotation, scale or weights";
-            return Err(Fault::new(self.place, problem));
-        };
-        match property {
-            Property::Translation => motion.translation = Some(self.curve(Type::Vec3)?.vector(time)?),
-            Property::Scale => motion.scale = Some(self.curve(Type::Vec3)?.vector(time)?),
-            Property::Rotation => motion.rotation = Some(self.curve(Type::Vec4)?.rotation(time)?),
-            Property::MorphTargetWeights => motion.weights = Some(self.curve(Type::Scalar)?.numbers(time)?),
-        }
-        Ok(())
+fn read_channel(curves: &CurveReader<'_, '_>, channel: &Channel, time: f32, motion: &mut Motion) -> Result<()> {
+    let Checked::Valid(property) = channel.target.path else {
+        let problem = "has an unknown path; it must be translation, rotation, scale or weights";
+        return Err(Fault::new(curves.place, problem));
+    };
+    match property {
+        Property::Translation => motion.translation = Some(curves.curve(Type::Vec3)?.vector(time)?),
+        Property::Scale => motion.scale = Some(curves.curve(Type::Vec3)?.vector(time)?),
+        Property::Rotation => motion.rotation = Some(curves.curve(Type::Vec4)?.rotation(time)?),
+        Property::MorphTargetWeights => motion.weights = Some(curves.curve(Type::Scalar)?.numbers(time)?),
     }
-
-    /// The key frames, of values of one kind.
-    fn curve(&self, kind: Type) -> Result<Curve<'a>> {
-        let Self { root, buffers, sampler, place } = *self;
-        let Checked::Valid(interpolation) = sampler.interpolation else {
-            return Err(Fault::new(place, "has an unknown interpolation; it must be LINEAR, STEP or CUBICSPLINE"));
-        };
-        let input = Accessor::new(root, buffers, sampler.input.value(), Type::Scalar, place)?;
-        let values = Accessor::new(root, buffers, sampler.output.value(), kind, place)?;
-        let times: Vec<f32> = (0..input.count).map(|index| input.numbers::<1>(index)[0]).collect();
-        if times.is_empty() || !times.iter().all(|time| time.is_finite()) || !times.is_sorted_by(|a, b| a < b) {
-            return Err(Fault::new(&input.place, "has times of an animation that do not rise, or none"));
-        }
-        let values_per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        let keys = times.len().saturating_mul(values_per_key);
-        let elements = values.count / keys;
-        let is_right = elements.checked_mul(keys) == Some(values.count) && (1..=MOST_NUMBERS).contains(&elements);
-        if !is_right || kind != Type::Scalar && elements != 1 {
-            let (count, times) = (values.count, times.len());
-            return Err(Fault::new(
-                place,
-                format!("has {count} values for {times} key frames, which do not go together"),
-            ));
-        }
-        Ok(Curve { place, interpolation, times, values, elements, kind })
-    }
-}
-
-/// The key frames of a channel.
-struct Curve<'a> {
-    place: &'a str,
-    interpolation: Interpolation,
-    /// Seconds, rising.
-    times: Vec<f32>,
-    values: Accessor<'a>,
-    /// Elements of `values` that make up a value.
-    elements: usize,
-    kind: Type,
-}
-
-/// A stretch between two key frames: their indices, how far along it is from 0 to 1, and its length in seconds.
-struct Stretch {
-    from: usize,
-    to: usize,
-    part: f32,
-    seconds: f32,
-}
-
-impl Curve<'_> {
-    fn stretch(&self, time: f32) -> Stretch {
-        let after = self.times.partition_point(|key| *key <= time);
-        let last = self.times.len() - 1;
-        let (from, to) = (after.saturating_sub(1), after.min(last));
-        let seconds = self.times[to] - self.times[from];
-        let part = if seconds > 0.0 { ((time - self.times[from]) / seconds).clamp(0.0, 1.0) } else { 0.0 };
-        Stretch { from, to, part, seconds }
-    }
-
-    /// The numbers of one element.
-    fn element(&self, index: usize) -> Vec<f32> {
-        match self.kind {
-            Type::Scalar => self.values.numbers::<1>(index).to_vec(),
-            Type::Vec3 => self.values.numbers::<3>(index).to_vec(),
-            _ => self.values.numbers::<4>(index).to_vec(),
-        }
-    }
-
-    /// The numbers of key frame `key`; of a spline `which` is 0 for the tangent before, 1 for the value, 2 for the tangent after.
-    fn key(&self, key: usize, which: usize) -> Vec<f32> {
-        let first = match self.interpolation {
-            Interpolation::CubicSpline => (3 * key + which) * self.elements,
-            _ => key * self.elements,
-        };
-        (first..first + self.elements).flat_map(|index| self.element(index)).collect()
-    }
-
-    /// The numbers at a time, before and after the key frames those of the first and last.
-    fn numbers(&self, time: f32) -> Result<Vec<f32>> {
-        let Stretch { from, to, part: s, seconds } = self.stretch(time);
-        let (before, after) = (self.key(from, 1), self.key(to, 1));
-        let pairs = before.iter().zip(&after);
-        let numbers: Vec<f32> = match self.interpolation {
-            Interpolation::Step => {
-                if s == 1.0 {
-                    after
-                } else {
-                    before
-                }
-            }
-            Interpolation::Linear => pairs.map(|(a, b)| (1.0 - s) * a + s * b).collect(),
-            // glTF 2.0, appendix C: Hermite's polynomials, of tangents per second.
-            Interpolation::CubicSpline => {
-                let tangents = self.key(from, 2).into_iter().zip(self.key(to, 0));
-                let (s2, s3) = (s * s, s * s * s);
-                let at = |((a, b), (leaving, arriving)): ((&f32, &f32), (f32, f32))| {
-                    (2.0 * s3 - 3.0 * s2 + 1.0) * a
-                        + seconds * (s3 - 2.0 * s2 + s) * leaving
-                        + (3.0 * s2 - 2.0 * s3) * b
-                        + seconds * (s3 - s2) * arriving
-                };
-                pairs.zip(tangents).map(at).collect()
-            }
-        };
-        if numbers.iter().all(|number| number.is_finite()) {
-            return Ok(numbers);
-        }
-        Err(Fault::new(self.place, format!("has a value that is not finite at {time} s")))
-    }
-
-    fn vector(&self, time: f32) -> Result<Vec3> {
-        Ok(Vec3::from_slice(&self.numbers(time)?))
-    }
-
-    fn rotation(&self, time: f32) -> Result<Quat> {
-        let rotation = match self.interpolation {
-            Interpolation::Linear => {
-                let Stretch { from, to, part, .. } = self.stretch(time);
-                let [a, b] = [from, to].map(|key| Quat::from_slice(&self.key(key, 1)).normalize());
-                a.slerp(b, part)
-            }
-            _ => Quat::from_slice(&self.numbers(time)?).normalize(),
-        };
-        if rotation.is_finite() {
-            return Ok(rotation);
-        }
-        Err(Fault::new(self.place, format!("has a rotation without a length at {time} s")))
-    }
+    Ok(())
 }

@@ -1,14 +1,20 @@
 //! The two forms of a glTF file: JSON, or JSON and bytes in a GLB container; versions and extensions.
 
+use std::borrow::Cow;
+
 use gltf_json::Root;
 
-use super::fault::{Fault, Result};
+use super::{
+    fault::{Fault, Result},
+    pointers::{self, Pointers},
+};
 
 /// The most JSON objects of a file: each takes some hundred bytes in memory.
 const MOST_JSON_OBJECTS: usize = 4_000_000;
 
 /// Extensions that are read in full, or in which nothing is lost when they are passed over.
-pub(super) const SUPPORTED: [&str; 14] = [
+pub(super) const SUPPORTED: [&str; 15] = [
+    pointers::EXTENSION,
     "KHR_lights_punctual",
     "KHR_materials_clearcoat",
     "KHR_materials_dispersion",
@@ -77,21 +83,25 @@ fn words(bytes: &[u8]) -> Option<[u32; 2]> {
     Some([u32::from_le_bytes(*words.first()?), u32::from_le_bytes(*words.get(1)?)])
 }
 
-/// The lists of the file.
-pub(super) fn parse(json: &[u8]) -> Result<Root> {
+/// The lists of the file, and what its animations point at elsewhere.
+pub(super) fn parse(json: &[u8]) -> Result<(Root, Pointers)> {
     let objects = json.iter().filter(|byte| **byte == b'{').count();
     if objects > MOST_JSON_OBJECTS {
         return Err(Fault::of_file(format!("has {objects} JSON objects; at most {MOST_JSON_OBJECTS} are read")));
     }
     // Some files begin with a byte-order mark.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
-    let root = Root::from_slice(json).map_err(|error| Fault::of_file(format!("is not valid glTF: {error}")))?;
+    let (pointers, json) = match Pointers::take(json) {
+        Some((pointers, json)) => (pointers, Cow::Owned(json)),
+        None => (Pointers::default(), Cow::Borrowed(json)),
+    };
+    let root = Root::from_slice(&json).map_err(|error| Fault::of_file(format!("is not valid glTF: {error}")))?;
     let version = &root.asset.version;
     let needed = root.asset.min_version.as_ref().unwrap_or(version);
     if !version.starts_with("2.") || !matches!(needed.as_str(), "2.0" | "2.1") && root.asset.min_version.is_some() {
         return Err(Fault::new("asset", format!("is of glTF version {needed}; version 2.0 is read")));
     }
-    Ok(root)
+    Ok((root, pointers))
 }
 
 /// Refuses what is required and not read; returns the names of the extensions that are used and not read.

@@ -2,24 +2,28 @@
 
 mod layers;
 mod numbers;
+mod parts;
 mod pictures;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use glam::Vec3;
-use gltf_json::{Root, material::AlphaMode};
+use gltf_json::{Root, material::AlphaMode, validation::Checked};
 
+pub(super) use self::parts::is_whole_on;
 use self::{
     layers::Layers,
     numbers::{Glass, Numbers, absorption, priority, share},
+    parts::Parts,
     pictures::{ALPHA, METALLIC, Pictures, ROUGHNESS, Uses},
 };
 use super::{
     container::SUPPORTED,
     fault::{Fault, Result, entry, place, shortened},
+    primitives::Needs,
     textures::{TextureReader, Use},
 };
-use crate::{ColorSpace, Dispersion, Material, MaterialKind, NormalMap, PLASTIC_REFLECTANCE, Texture, Textures};
+use crate::{Blend, ColorSpace, Dispersion, Material, MaterialKind, NormalMap, PLASTIC_REFLECTANCE, Texture, Textures};
 
 /// Index of refraction of a material that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -58,11 +62,17 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         material.and_then(|index| self.names.get(index)).map_or_else(|| "default".to_owned(), String::clone)
     }
 
-    /// The set of texture coordinates that a material takes, if it has pictures.
-    pub(super) fn uv_set(&self, material: Option<usize>, user: &str) -> Result<Option<u32>> {
-        let Some(index) = material else { return Ok(None) };
+    /// What a material asks of the corners of its triangles.
+    pub(super) fn needs(&self, material: Option<usize>, user: &str) -> Result<Needs> {
+        let Some(index) = material else { return Ok(Needs::default()) };
         let material = entry(&self.root.materials, "materials", index, user)?;
-        Ok(Uses::of(material, &self.place(index))?.all().next().map(|used| used.uv_set))
+        let uses = Uses::of(material, &self.place(index))?;
+        let uv_set = uses.all().next().map(|used| used.uv_set);
+        Ok(Needs {
+            uv_set,
+            has_normal_map: uses.normal.is_some_and(|normal| Some(normal.uv_set) == uv_set),
+            has_coverage: material.alpha_mode != Checked::Valid(AlphaMode::Opaque),
+        })
     }
 
     /// Whether a material bounds a volume, where its mesh is closed.
@@ -112,17 +122,19 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let is_unlit = source.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
         let layers = Layers { is_unlit, ..Layers::of(others, ior, &place)? };
         self.warn_of_layers(&layers, glass.is_some(), &place);
-        let Some(glass) = glass else { return Ok(self.opaque(name, &numbers, &layers, pictures, &place)) };
-        if !is_volume && self.is_volume(Some(index)) {
+        let Some((glass, parts)) = glass else { return Ok(self.opaque(name, &numbers, &layers, pictures, &place)) };
+        let blend = self.rest_of_glass(&parts, &name, &numbers, &layers, &pictures, &place);
+        let mut material = if is_volume {
+            let extras = source.extras.as_ref().map(|extras| extras.get());
+            self.volume(name, extras, glass, &numbers, pictures, &place)?
+        } else if self.is_volume(Some(index)) {
             self.warn(&place, "is on a surface that is not closed; there its glass has no thickness (thin_walled)");
-            return Ok(self.sheet(format!("{name} (thin-walled)"), glass, &numbers, pictures, &place));
-        }
-        match is_volume {
-            true => {
-                self.volume(name, source.extras.as_ref().map(|extras| extras.get()), glass, &numbers, pictures, &place)
-            }
-            false => Ok(self.sheet(name, glass, &numbers, pictures, &place)),
-        }
+            self.sheet(format!("{name} (thin-walled)"), glass, &numbers, pictures, &place)
+        } else {
+            self.sheet(name, glass, &numbers, pictures, &place)
+        };
+        material.blend = blend;
+        Ok(material)
     }
 
     fn note_unsupported(&mut self, index: usize) {
@@ -174,23 +186,23 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
     }
 
     /// What a material is as glass, if light passes through it.
-    fn glass(&mut self, index: usize, numbers: &Numbers, pictures: &Pictures, place: &str) -> Result<Option<Glass>> {
+    fn glass(
+        &mut self,
+        index: usize,
+        numbers: &Numbers,
+        pictures: &Pictures,
+        place: &str,
+    ) -> Result<Option<(Glass, Parts)>> {
         let Some(extensions) = &self.root.materials[index].extensions else { return Ok(None) };
         let ior = extensions.ior.as_ref().map_or(DEFAULT_IOR, |ior| ior.ior.0);
         let Some(transmission) = &extensions.transmission else { return Ok(None) };
         let factor = share(transmission.transmission_factor.0, "transmissionFactor", place)?;
-        let mean = |texture: &Option<Texture>, channel| texture.as_ref().map_or(1.0, |t| t.image.mean()[channel]);
-        // Metal is opaque, whatever its transmission.
-        if factor == 0.0 || numbers.metallic * mean(&pictures.metal, METALLIC) > 0.5 {
+        let parts = Parts::of(factor, numbers.metallic, pictures);
+        if parts.most_glass() <= 0.0 {
             return Ok(None);
         }
-        let passes = factor * mean(&pictures.transmission, 0);
-        if passes < 0.999 {
-            let fate = if passes < 0.5 { "none" } else { "all" };
-            self.warn(place, format!("transmits {passes:.2} of its light (in the mean), which is not supported in part; {fate} of it passes"));
-        }
-        if passes < 0.5 {
-            return Ok(None);
+        if parts.is_mean {
+            self.warn(place, "has pictures of metal and of transmission that lie in different ways; the mean share of metal stands in");
         }
         if ior <= 0.0 || !ior.is_finite() {
             return Err(Fault::new(
@@ -206,11 +218,36 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
                 format!("has a {DISPERSION} whose dispersion is not a number of 0 or greater"),
             ));
         }
-        Ok(Some(Glass {
+        let glass = Glass {
             ior,
             dispersion: if dispersion == 0.0 { Dispersion::None } else { Dispersion::Abbe(20.0 / dispersion) },
             absorption: extensions.volume.as_ref().map_or(Ok(Vec3::ZERO), |volume| absorption(volume, place))?,
-        }))
+        };
+        Ok(Some((glass, parts)))
+    }
+
+    /// What a material is where it is no glass, if there is such a place.
+    fn rest_of_glass(
+        &mut self,
+        parts: &Parts,
+        name: &str,
+        numbers: &Numbers,
+        layers: &Layers,
+        pictures: &Pictures,
+        place: &str,
+    ) -> Option<Box<Blend>> {
+        if parts.is_whole() {
+            return None;
+        }
+        let (share, texture) = parts.glass.clone();
+        let (metallic, metal) = parts.metal.clone();
+        let numbers = Numbers { metallic, ..numbers.without_shine() };
+        let layers = Layers { coat: None, is_unlit: false, ..*layers };
+        let mut rest = self.opaque(name.to_owned(), &numbers, &layers, pictures.clone(), place);
+        if let MaterialKind::MetallicRoughness { .. } = rest.kind {
+            rest.textures.metallic = metal;
+        }
+        Some(Box::new(Blend { share, texture, rest }))
     }
 
     fn warn_of_layers(&mut self, layers: &Layers, is_glass: bool, place: &str) {
@@ -240,15 +277,17 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let mut emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
         let coat = self.coat(numbers, layers, &pictures, place);
         let mut textures = pictures.textures();
+        let mut blend = None;
         let has_no_metal = metallic == 0.0;
         let kind = if layers.is_unlit {
             emission = base_color;
             emission_picture = textures.color.take();
             textures = Textures::default();
             MaterialKind::Diffuse { albedo: Vec3::ZERO }
-        } else if let Some(roughness) = coat {
+        } else if let Some([strength, roughness]) = coat {
             textures.roughness =
                 pictures.coat_roughness.clone().map(|texture| Texture { channel: ROUGHNESS, ..texture });
+            blend = self.rest_of_coat(strength, &name, numbers, layers, &pictures, place);
             MaterialKind::Coated { albedo: base_color, ior: DEFAULT_IOR, roughness }
         } else if has_no_metal && layers.reflectance == Vec3::ZERO {
             textures.roughness = None;
@@ -258,14 +297,33 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
             MaterialKind::MetallicRoughness { base_color, reflectance: layers.reflectance, metallic, roughness }
         };
         textures.emission = emission_picture;
-        let mut material = Material { emission, textures, ..Material::new(name, kind) };
+        let mut material = Material { emission, textures, blend, ..Material::new(name, kind) };
         set_opacity(&mut material, numbers, &pictures);
         material
     }
 
-    /// The roughness of a clear coat over what is no metal, if there is one.
-    fn coat(&mut self, numbers: &Numbers, layers: &Layers, pictures: &Pictures, place: &str) -> Option<f32> {
-        let [factor, roughness] = layers.coat?;
+    /// What a material is where it has no coat, if it has one in part.
+    fn rest_of_coat(
+        &mut self,
+        strength: f32,
+        name: &str,
+        numbers: &Numbers,
+        layers: &Layers,
+        pictures: &Pictures,
+        place: &str,
+    ) -> Option<Box<Blend>> {
+        let texture = pictures.coat.clone();
+        if strength == 1.0 && texture.as_ref().is_none_or(|texture| texture.image.least().x >= 1.0) {
+            return None;
+        }
+        let layers = Layers { coat: None, ..*layers };
+        let rest = self.opaque(name.to_owned(), &numbers.without_shine(), &layers, pictures.clone(), place);
+        Some(Box::new(Blend { share: strength, texture, rest }))
+    }
+
+    /// Strength and roughness of a clear coat over what is no metal, if there is one.
+    fn coat(&mut self, numbers: &Numbers, layers: &Layers, pictures: &Pictures, place: &str) -> Option<[f32; 2]> {
+        let coat = layers.coat?;
         if numbers.metallic > 0.0 && pictures.metal.as_ref().is_none_or(|texture| texture.image.most()[METALLIC] > 0.0)
         {
             self.warn(
@@ -274,31 +332,14 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
             );
             return None;
         }
-        let strength = factor * pictures.coat.as_ref().map_or(1.0, |texture| texture.image.mean().x);
-        if strength < 0.999 {
-            let fate = if strength < 0.5 { "without the coat" } else { "with a whole one" };
-            self.warn(
-                place,
-                format!(
-                    "has {strength:.2} of a clear coat (in the mean), which is not supported in part; it shows {fate}"
-                ),
-            );
-        }
-        (strength >= 0.5).then_some(roughness)
+        Some(coat)
     }
 
     fn sheet(&mut self, name: String, glass: Glass, numbers: &Numbers, pictures: Pictures, place: &str) -> Material {
         self.warn_of_emission(numbers, place);
-        let roughness =
-            numbers.roughness * pictures.metal.as_ref().map_or(1.0, |texture| texture.image.mean()[ROUGHNESS]);
-        if roughness >= crate::SMOOTH {
-            self.warn(
-                place,
-                format!("is a sheet of glass of roughness {roughness:.2} (in the mean), which is shown without"),
-            );
-        }
-        let mut material = Material::new(name, MaterialKind::ThinWalled { ior: glass.ior, tint: numbers.base_color });
-        material.textures = Textures { roughness: None, ..pictures.textures() };
+        let Numbers { base_color: tint, roughness, .. } = *numbers;
+        let kind = MaterialKind::ThinWalled { ior: glass.ior, tint, roughness };
+        let mut material = Material { textures: pictures.textures(), ..Material::new(name, kind) };
         set_opacity(&mut material, numbers, &pictures);
         material
     }

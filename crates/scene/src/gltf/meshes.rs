@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
-use gltf_json::{Root, material::AlphaMode, validation::Checked};
+use glam::{Vec2, Vec3, Vec4};
+use gltf_json::Root;
 
 use super::{
     buffers::Buffers,
     fault::{Fault, Result, entry, place},
-    pose::{Pose, PrimitivePose},
-    primitives::Corners,
+    pose::{Pose, Posed, PrimitivePose},
+    primitives::{Corners, Needs},
     variants,
 };
 use crate::Mesh;
@@ -17,7 +17,7 @@ use crate::Mesh;
 /// The most triangles of a file, over all its meshes.
 pub(super) const MOST_TRIANGLES: usize = 1 << 27;
 
-/// Vertex colours from which on are white.
+/// Vertex colours from which on are white, and whole.
 const WHITE: f32 = 0.999;
 
 /// The corner of a picture that shows where there are no texture coordinates.
@@ -44,14 +44,13 @@ impl<'a, 'b> MeshReader<'a, 'b> {
         Self { root, buffers, variant, triangles_left: MOST_TRIANGLES, warnings: Vec::new() }
     }
 
-    /// The mesh of an index, in a pose; none if it has no triangles. `uv_set_of` tells which texture coordinates a material takes,
-    /// if it takes any.
+    /// The mesh of an index, in a pose; none if it has no triangles. `needs_of` tells what a material asks of the corners.
     pub(super) fn read(
         &mut self,
         index: usize,
         pose: &Pose,
         user: &str,
-        uv_set_of: impl Fn(Option<usize>) -> Result<Option<u32>>,
+        needs_of: impl Fn(Option<usize>) -> Result<Needs>,
     ) -> Result<Option<SlottedMesh>> {
         let source = entry(&self.root.meshes, "meshes", index, user)?;
         let mesh_place = place("meshes", index, source.name.as_deref());
@@ -59,14 +58,13 @@ impl<'a, 'b> MeshReader<'a, 'b> {
         for (number, primitive) in source.primitives.iter().enumerate() {
             let place = format!("{mesh_place}.primitives[{number}]");
             let material = variants::material(primitive, self.variant, &place)?;
-            let uv_set = uv_set_of(material)?;
-            let corners = Corners::read(self.root, self.buffers, primitive, uv_set, &place)?;
+            let corners = Corners::read(self.root, self.buffers, primitive, needs_of(material)?, &place)?;
             let Some(corners) = corners else {
                 self.warnings.push(Fault::new(place, "has points or lines, which are not shown"));
                 continue;
             };
             self.take(corners.triangles.len(), &place)?;
-            self.warn_of(&corners, uv_set, material, &place);
+            self.warn_of(&corners, &place);
             let pose = pose.of_primitive(self.root, self.buffers, primitive, corners.positions.count, &place)?;
             builder.add(corners, &pose, material, &place)?;
         }
@@ -89,19 +87,11 @@ impl<'a, 'b> MeshReader<'a, 'b> {
     }
 
     /// What of a primitive is not shown as it is meant.
-    fn warn_of(&mut self, corners: &Corners<'_>, uv_set: Option<u32>, material: Option<usize>, place: &str) {
-        if let Some(set) = uv_set.filter(|_| corners.uvs.is_none()) {
+    fn warn_of(&mut self, corners: &Corners<'_>, place: &str) {
+        if let Some(set) = corners.needs.uv_set.filter(|_| corners.uvs.is_none()) {
             let problem = format!(
                 "has no TEXCOORD_{set}, which the pictures of its material need; their upper left corner shows"
             );
-            self.warnings.push(Fault::new(place, problem));
-        }
-        let material = material.and_then(|index| self.root.materials.get(index));
-        let is_opaque = material.is_none_or(|material| material.alpha_mode == Checked::Valid(AlphaMode::Opaque));
-        let is_clear = |vertex| corners.colors.as_ref().is_some_and(|colors| colors.at(vertex).w < 0.999);
-        if !is_opaque && (0..corners.positions.count).any(is_clear) {
-            let problem =
-                "has vertex colours with coverage (COLOR_0), which is not supported; it shows without holes of them";
             self.warnings.push(Fault::new(place, problem));
         }
     }
@@ -151,40 +141,27 @@ impl Builder {
         used: &[u32],
         place: &str,
     ) -> Result<()> {
-        let Mesh { positions, normals, uvs, map_uvs, colors, .. } = &mut self.mesh;
-        let before = positions.len();
-        positions.reserve_exact(used.len());
-        if corners.normals.is_some() || !normals.is_empty() {
-            normals.resize(before + used.len(), Vec3::ZERO);
-        }
-        if corners.uvs.is_some() || corners.has_pictures || !uvs.is_empty() {
-            uvs.resize(before + used.len(), UPPER_LEFT);
-        }
-        if corners.colors.is_some() || !colors.is_empty() {
-            colors.resize(before + used.len(), Vec3::ONE);
-        }
-        if corners.map_uvs.is_some() || !map_uvs.is_empty() {
-            map_uvs.resize(before + used.len(), UPPER_LEFT);
-        }
+        let before = self.mesh.positions.len();
+        self.make_room(corners, before + used.len());
+        let mesh = &mut self.mesh;
         for (number, &vertex) in (before..).zip(used) {
             let vertex = vertex as usize;
-            let position = Vec3::from(corners.positions.numbers(vertex));
             let normal = corners.normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals.numbers(vertex)));
-            let (position, normal) = pose.apply(vertex, position, normal);
-            if !position.is_finite() {
-                return Err(not_finite("position", position, vertex, place));
+            let tangent = corners.tangents.as_ref().map_or(Vec4::ZERO, |tangents| Vec4::from(tangents.numbers(vertex)));
+            let position = Vec3::from(corners.positions.numbers(vertex));
+            let posed = pose.apply(vertex, Posed { position, normal, tangent: tangent.truncate() });
+            if !posed.position.is_finite() {
+                return Err(not_finite("position", posed.position, vertex, place));
             }
-            positions.push(position);
-            if let Some(stored) = normals.get_mut(number).filter(|_| normal.is_finite()) {
-                *stored = normal;
+            mesh.positions.push(posed.position);
+            if let Some(stored) = mesh.normals.get_mut(number).filter(|_| posed.normal.is_finite()) {
+                *stored = posed.normal;
             }
-            if let Some(given) = &corners.colors {
-                colors[number] = given.at(vertex).truncate();
-                if !colors[number].is_finite() {
-                    return Err(not_finite("vertex colour", colors[number], vertex, place));
-                }
+            if let Some(stored) = mesh.tangents.get_mut(number) {
+                *stored = usable_tangent(posed.tangent, tangent.w);
             }
-            for (given, stored) in [(&corners.uvs, &mut *uvs), (&corners.map_uvs, &mut *map_uvs)] {
+            add_color(mesh, number, corners, vertex, place)?;
+            for (given, stored) in [(&corners.uvs, &mut mesh.uvs), (&corners.map_uvs, &mut mesh.map_uvs)] {
                 let Some(given) = given else { continue };
                 let [u, v] = given.numbers(vertex);
                 // (0, 0) is a picture's upper left corner in glTF, and its lower left one here.
@@ -195,6 +172,18 @@ impl Builder {
             }
         }
         Ok(())
+    }
+
+    /// Makes room for what the mesh's vertices have, up to a number of them; what they lack has its usual value.
+    fn make_room(&mut self, corners: &Corners<'_>, vertices: usize) {
+        let Mesh { positions, normals, uvs, map_uvs, colors, opacities, tangents, .. } = &mut self.mesh;
+        positions.reserve_exact(vertices - positions.len());
+        extend(normals, corners.normals.is_some(), vertices, Vec3::ZERO);
+        extend(uvs, corners.uvs.is_some() || corners.needs.uv_set.is_some(), vertices, UPPER_LEFT);
+        extend(map_uvs, corners.map_uvs.is_some(), vertices, UPPER_LEFT);
+        extend(colors, corners.colors.is_some(), vertices, Vec3::ONE);
+        extend(opacities, corners.colors.is_some() && corners.needs.has_coverage, vertices, 1.0);
+        extend(tangents, corners.tangents.is_some(), vertices, Vec4::ZERO);
     }
 
     fn add_triangles(&mut self, triangles: Vec<[u32; 3]>, material: Option<usize>) {
@@ -228,8 +217,39 @@ impl Builder {
         if mesh.colors.iter().all(|color| color.min_element() > WHITE) {
             mesh.colors = Vec::new();
         }
+        if mesh.opacities.iter().all(|opacity| *opacity > WHITE) {
+            mesh.opacities = Vec::new();
+        }
         ((!mesh.triangles.is_empty()).then_some(SlottedMesh { mesh, slots }), replaced)
     }
+}
+
+/// Gives a list that some vertices need one entry for each.
+fn extend<T: Clone>(list: &mut Vec<T>, is_needed: bool, vertices: usize, usual: T) {
+    if is_needed || !list.is_empty() {
+        list.resize(vertices, usual);
+    }
+}
+
+/// Colour and coverage of a vertex, if it has any.
+fn add_color(mesh: &mut Mesh, number: usize, corners: &Corners<'_>, vertex: usize, place: &str) -> Result<()> {
+    let Some(colors) = &corners.colors else { return Ok(()) };
+    let color = colors.at(vertex);
+    if !color.is_finite() {
+        return Err(not_finite("vertex colour", color, vertex, place));
+    }
+    mesh.colors[number] = color.truncate();
+    if corners.needs.has_coverage {
+        mesh.opacities[number] = color.w;
+    }
+    Ok(())
+}
+
+/// A tangent with its side; 0, for one that is made, where it is none.
+fn usable_tangent(tangent: Vec3, side: f32) -> Vec4 {
+    let is_side = side.is_finite() && side != 0.0;
+    let unit = tangent.try_normalize().filter(|_| is_side);
+    unit.map_or(Vec4::ZERO, |tangent| tangent.extend(side.signum()))
 }
 
 fn not_finite(what: &str, found: impl std::fmt::Display, vertex: usize, place: &str) -> Fault {

@@ -77,7 +77,12 @@ impl Pose {
                     })
                     .transpose()
             };
-            targets.push((weight, accessor(target.positions)?, accessor(target.normals)?));
+            targets.push(Target {
+                weight,
+                positions: accessor(target.positions)?,
+                normals: accessor(target.normals)?,
+                tangents: accessor(target.tangents)?,
+            });
         }
         let attribute =
             |semantic| super::primitives::attribute(root, buffers, primitive, (semantic, Type::Vec4), vertices, place);
@@ -126,29 +131,50 @@ fn joints(root: &Root, buffers: &Buffers<'_>, nodes: &Nodes, skin: usize, user: 
 /// A pose with the numbers of a primitive.
 pub(super) struct PrimitivePose<'a> {
     joints: &'a [Mat4],
-    /// Weight, positions and normals of each morph target that counts.
-    targets: Vec<(f32, Option<Accessor<'a>>, Option<Accessor<'a>>)>,
+    /// The morph targets that count.
+    targets: Vec<Target<'a>>,
     /// Joints and weights.
     influences: Option<(Accessor<'a>, Accessor<'a>)>,
 }
 
+/// What a morph target adds to vertices.
+struct Target<'a> {
+    weight: f32,
+    positions: Option<Accessor<'a>>,
+    normals: Option<Accessor<'a>>,
+    tangents: Option<Accessor<'a>>,
+}
+
+/// What of a vertex moves.
+#[derive(Clone, Copy)]
+pub(super) struct Posed {
+    pub(super) position: Vec3,
+    pub(super) normal: Vec3,
+    pub(super) tangent: Vec3,
+}
+
 impl PrimitivePose<'_> {
-    /// Position and normal of a vertex.
-    pub(super) fn apply(&self, vertex: usize, mut position: Vec3, mut normal: Vec3) -> (Vec3, Vec3) {
-        for (weight, positions, normals) in &self.targets {
+    /// A vertex where the pose moves it.
+    pub(super) fn apply(&self, vertex: usize, mut posed: Posed) -> Posed {
+        for target in &self.targets {
             let moved = |accessor: &Option<Accessor<'_>>| {
-                accessor.as_ref().map_or(Vec3::ZERO, |accessor| *weight * Vec3::from(accessor.numbers(vertex)))
+                accessor.as_ref().map_or(Vec3::ZERO, |accessor| target.weight * Vec3::from(accessor.numbers(vertex)))
             };
-            position += moved(positions);
-            normal += moved(normals);
+            posed.position += moved(&target.positions);
+            posed.normal += moved(&target.normals);
+            posed.tangent += moved(&target.tangents);
         }
-        let Some((joints, weights)) = &self.influences else { return (position, normal) };
+        let Some((joints, weights)) = &self.influences else { return posed };
         let weights = weights.numbers::<4>(vertex);
         let sum: f32 = weights.iter().sum();
         let mut blend = Mat4::ZERO;
         for (joint, weight) in joints.wholes::<4>(vertex).into_iter().zip(weights) {
             blend += self.joints[joint as usize] * (weight / sum);
         }
-        (blend.transform_point3(position), Mat3::from_mat4(blend).inverse().transpose() * normal)
+        Posed {
+            position: blend.transform_point3(posed.position),
+            normal: Mat3::from_mat4(blend).inverse().transpose() * posed.normal,
+            tangent: blend.transform_vector3(posed.tangent),
+        }
     }
 }

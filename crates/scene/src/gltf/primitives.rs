@@ -23,10 +23,23 @@ pub(super) struct Corners<'a> {
     pub(super) map_uvs: Option<Accessor<'a>>,
     /// Factors on the material's colour, with coverage.
     pub(super) colors: Option<Colors<'a>>,
-    /// Whether pictures lie on the surface, which then must have texture coordinates, if only of one point.
-    pub(super) has_pictures: bool,
+    /// Tangents, on surfaces with normals and a normal map alone.
+    pub(super) tangents: Option<Accessor<'a>>,
+    /// What the material asks of it.
+    pub(super) needs: Needs,
     /// Vertices of each triangle, all of which are in range.
     pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// What a material asks of the corners of its triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Needs {
+    /// The set of texture coordinates on which its pictures lie, if it has any.
+    pub(super) uv_set: Option<u32>,
+    /// Whether a normal map is among them.
+    pub(super) has_normal_map: bool,
+    /// Whether coverage makes holes, by its alphaMode.
+    pub(super) has_coverage: bool,
 }
 
 /// COLOR_0, of three or four channels.
@@ -81,13 +94,12 @@ pub(super) fn attribute<'a>(
 }
 
 impl<'a> Corners<'a> {
-    /// Reads a primitive with the texture coordinates of set `uv_set`, if there is one that its material needs; none for points
-    /// and lines.
+    /// Reads a primitive with what its material needs; none for points and lines.
     pub(super) fn read(
         root: &Root,
         buffers: &'a Buffers<'_>,
         primitive: &Primitive,
-        uv_set: Option<u32>,
+        needs: Needs,
         place: &str,
     ) -> Result<Option<Self>> {
         let Checked::Valid(mode) = primitive.mode else {
@@ -109,12 +121,17 @@ impl<'a> Corners<'a> {
             let problem = format!("has the index {} at {at}, but {place} has {vertices} vertices, from 0", index(at));
             return Err(Fault::new(indices.as_ref().map_or(place, |indices| &indices.place), problem));
         }
+        let normals = find(Semantic::Normals, Type::Vec3, vertices)?;
+        // Without normals the format has none of the tangents either.
+        let takes_tangents = needs.has_normal_map && normals.is_some();
+        let tangents = takes_tangents.then(|| find(Semantic::Tangents, Type::Vec4, vertices));
         Ok(Some(Self {
-            normals: find(Semantic::Normals, Type::Vec3, vertices)?,
-            uvs: find(Semantic::TexCoords(uv_set.unwrap_or(0)), Type::Vec2, vertices)?,
+            normals,
+            tangents: tangents.transpose()?.flatten(),
+            uvs: find(Semantic::TexCoords(needs.uv_set.unwrap_or(0)), Type::Vec2, vertices)?,
             map_uvs: find(Semantic::TexCoords(1), Type::Vec2, vertices)?,
             colors: Colors::read(root, buffers, primitive, vertices, place)?,
-            has_pictures: uv_set.is_some(),
+            needs,
             positions,
             triangles: triangles(mode, count, index, place)?,
         }))

@@ -41,11 +41,10 @@ pub(super) fn slot_materials(
         };
         let folder = Folder::of(library, options);
         let mut material = entry.material(&mut pictures, &folder, !mesh.uvs.is_empty(), warnings);
-        if let MaterialKind::Dielectric { ior, tint, .. } = material.kind
+        if let MaterialKind::Dielectric { ior, tint, roughness, .. } = material.kind
             && !closed_slots.get_or_insert_with(|| closed_slots_of(mesh))[number]
         {
-            material.kind = MaterialKind::ThinWalled { ior, tint };
-            material.textures.roughness = None;
+            material.kind = MaterialKind::ThinWalled { ior, tint, roughness };
             warnings.push(Warning::OpenGlass { path: obj_path.to_owned(), material: material.name.clone() });
         }
         materials.push(Some(material));

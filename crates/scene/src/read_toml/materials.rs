@@ -10,7 +10,7 @@ use super::{
     table::Table,
     textures::{DefaultChannel, Opacity, TextureReader},
 };
-use crate::{Error, METALS, Material, MaterialKind, Metal, PLASTIC_REFLECTANCE, Textures, metal};
+use crate::{Blend, Error, METALS, Material, MaterialKind, Metal, PLASTIC_REFLECTANCE, Textures, metal};
 
 /// Index of refraction of a coat or a thin wall that states none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -60,7 +60,7 @@ impl MaterialType {
             Self::Mirror => (&["reflectance", "emission", "normal", "opacity"], &[]),
             Self::Conductor => (&["roughness", "emission", "normal", "opacity"], &["metal", "eta", "k"]),
             Self::Dielectric => (&["tint", "roughness", "normal"], &DIELECTRIC_KEYS),
-            Self::ThinWalled => (&["tint", "normal", "opacity"], &["ior", "substance"]),
+            Self::ThinWalled => (&["tint", "roughness", "normal", "opacity"], &["ior", "substance"]),
             Self::Coated => (&["albedo", "roughness", "emission", "normal", "opacity"], &["ior"]),
             Self::MetallicRoughness => {
                 (&["base_color", "metallic", "roughness", "emission", "normal", "opacity"], &["reflectance"])
@@ -82,7 +82,7 @@ impl MaterialType {
         }
         let (with_picture, without) = self.keys();
         let group: &[&str] = if is_glass { &[] } else { &["group"] };
-        table.allow_only(&[&["type"], with_picture, without, group].concat())?;
+        table.allow_only(&[&["type"], with_picture, without, group, &["share", "rest"]].concat())?;
         for entry in without.iter().filter_map(|key| table.get(key)) {
             if entry.is_table_with("image") {
                 let others = with_picture.join(", ");
@@ -104,7 +104,31 @@ impl<'a> MaterialReader<'a> {
     }
 
     pub(super) fn read_all(&mut self, tables: &[(String, Table<'_>)]) -> Result<Vec<Material>, Error> {
-        tables.iter().map(|(name, table)| self.read(name, table)).collect()
+        let mut materials: Vec<_> =
+            tables.iter().map(|(name, table)| self.read(name, table)).collect::<Result<_, _>>()?;
+        let blends: Vec<_> =
+            tables.iter().map(|(_, table)| self.read_blend(table, &materials)).collect::<Result<_, _>>()?;
+        for (material, blend) in materials.iter_mut().zip(blends) {
+            material.blend = blend;
+        }
+        Ok(materials)
+    }
+
+    /// What a material is in part, by the name of another; `materials` are all of them, still without.
+    fn read_blend(&mut self, table: &Table<'_>, materials: &[Material]) -> Result<Option<Box<Blend>>, Error> {
+        const SHARE: &str = "the share of the light, from 0 to 1, that meets this material and not the one of rest";
+        const REST: &str = "the name of the material that the rest of the light meets";
+        if table.get("share").is_none() && table.get("rest").is_none() {
+            return Ok(None);
+        }
+        let (share, rest) = (table.require("share", SHARE)?, table.require("rest", REST)?);
+        let name = rest.string(REST)?;
+        let names: Vec<_> = materials.iter().map(|material| material.name.as_str()).collect();
+        let Some(found) = materials.iter().find(|material| material.name == name) else {
+            return Err(rest.unknown_name("material", name, &names, "materials"));
+        };
+        let (share, texture) = self.textures.number(&share, DefaultChannel::Color(0))?;
+        Ok(Some(Box::new(Blend { share, texture, rest: found.clone() })))
     }
 
     fn read(&mut self, name: &str, table: &Table<'_>) -> Result<Material, Error> {
@@ -152,6 +176,7 @@ impl MaterialKeys<'_, '_, '_> {
                     None => DEFAULT_IOR,
                 },
                 tint: self.color_or("tint", Vec3::ONE)?,
+                roughness: self.roughness_or(0.0)?,
             },
             MaterialType::Coated => MaterialKind::Coated {
                 albedo: self.color("albedo")?,

@@ -4,9 +4,11 @@ use glam::Vec3;
 
 use super::{
     at::{At, above},
-    textures::check_textures,
+    textures::{check_number, check_textures},
 };
-use crate::{Dispersion, Error, LONGEST_WAVELENGTH, Material, MaterialKind, SHORTEST_WAVELENGTH, Scene, Subject};
+use crate::{
+    Blend, Dispersion, Error, LONGEST_WAVELENGTH, Material, MaterialKind, SHORTEST_WAVELENGTH, Scene, Subject,
+};
 
 /// The most materials of a scene: kernels pack a material's index in 16 bits.
 const MOST_MATERIALS: usize = 65_535;
@@ -23,13 +25,43 @@ impl Scene {
 
 fn check_material(index: usize, material: &Material) -> Result<(), Error> {
     let at = At(Subject::Material { index, name: material.name.clone() });
-    check_kind(&at, &material.kind)?;
+    check_one(&at, material)?;
+    material.blend.as_ref().map_or(Ok(()), |blend| check_blend(&at, material, blend))
+}
+
+fn check_one(at: &At, material: &Material) -> Result<(), Error> {
+    check_kind(at, &material.kind)?;
     at.channels("emission", material.emission, 0.0.., "0 or greater (W/(m² sr))")?;
     let is_glass = matches!(material.kind, MaterialKind::Dielectric { .. } | MaterialKind::ThinWalled { .. });
     at.require(!is_glass || material.emission == Vec3::ZERO, "emission", || {
         format!("is {}, but glass takes no emission; it must be 0", material.emission)
     })?;
-    check_textures(&at, material)
+    check_textures(at, material)
+}
+
+/// Refuses what cannot be the other part of a material.
+fn check_blend(at: &At, material: &Material, blend: &Blend) -> Result<(), Error> {
+    at.number("share", blend.share, 0.0..=1.0, "from 0 to 1")?;
+    check_number(at, "share", blend.share, &blend.texture)?;
+    let rest = &blend.rest;
+    let refuse = |is_wrong: bool, what: &str| {
+        at.require(!is_wrong, "rest", || format!("is the material {:?}, which {what}; name another", rest.name))
+    };
+    refuse(
+        matches!(rest.kind, MaterialKind::Dielectric { .. }),
+        "is a dielectric, and the rest of a surface bounds no volume",
+    )?;
+    refuse(rest.blend.is_some(), "has a rest of its own")?;
+    refuse(
+        rest.emission != Vec3::ZERO,
+        "has an emission, but the whole surface has that of the material with the rest",
+    )?;
+    let is_whole = rest.opacity == 1.0 && rest.opacity_cutoff.is_none() && rest.textures.opacity.is_none();
+    refuse(!is_whole, "has an opacity, but the whole surface has that of the material with the rest")?;
+    let place = |material: &Material| material.textures.normal.as_ref().map(|map| map.texture.picture_from_uv);
+    let differ = place(material).zip(place(rest)).is_some_and(|(own, other)| own != other);
+    refuse(differ, "has a normal map that lies in another way on the surface")?;
+    check_one(at, rest)
 }
 
 fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
@@ -57,9 +89,10 @@ fn check_kind(at: &At, kind: &MaterialKind) -> Result<(), Error> {
             at.channels("absorption", absorption, 0.0.., "0 or greater (1/m)")?;
             check_roughness(roughness)
         }
-        MaterialKind::ThinWalled { ior, tint } => {
+        MaterialKind::ThinWalled { ior, tint, roughness } => {
             check_ior(ior)?;
-            check_share("tint", tint)
+            check_share("tint", tint)?;
+            check_roughness(roughness)
         }
         MaterialKind::Coated { albedo, ior, roughness } => {
             check_share("albedo", albedo)?;

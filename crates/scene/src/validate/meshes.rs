@@ -1,6 +1,6 @@
 //! Checks meshes.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::at::{REACH, is_in_reach};
 use crate::{Chart, Mesh};
@@ -26,6 +26,8 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
         ("texture coordinates", mesh.uvs.len()),
         ("texture coordinates for its map", mesh.map_uvs.len()),
         ("colours", mesh.colors.len()),
+        ("opacities", mesh.opacities.len()),
+        ("tangents", mesh.tangents.len()),
     ];
     for (what, count) in counts {
         ensure(count == 0 || count == vertices, &|| format!("has {count} {what}; it must have {vertices} or none"))?;
@@ -38,6 +40,14 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
     if let Some(color) = mesh.colors.iter().find(|color| !is_share(color)) {
         return Err(format!("has the vertex colour {color}; each channel must be from 0 to 1"));
     }
+    if let Some(opacity) = mesh.opacities.iter().find(|opacity| !(0.0..=1.0).contains(*opacity)) {
+        return Err(format!("has the vertex opacity {opacity}; it must be from 0 to 1"));
+    }
+    if let Some(tangent) = mesh.tangents.iter().find(|tangent| !is_tangent(tangent)) {
+        return Err(format!(
+            "has the tangent {tangent}; its length must be 1 and its fourth number 1 or -1, or all must be 0"
+        ));
+    }
     if let Chart::Natural(places) = &mesh.chart {
         let are_sound = places.len() == vertices && places.iter().all(|place| place.is_finite());
         ensure(are_sound, &|| {
@@ -48,6 +58,12 @@ pub(super) fn check_mesh(mesh: &Mesh) -> Result<(), String> {
     ensure(has_map, &|| "has no texture coordinates, which are to be its map; leave out map_uvs".to_owned())?;
     check_triangle_slots(mesh)?;
     ensure(mesh.degenerate_triangles() < triangles, &|| format!("has {triangles} triangles, all of zero area"))
+}
+
+/// Whether a tangent is of unit length and has a side, or is none.
+fn is_tangent(tangent: &Vec4) -> bool {
+    let is_unit = (tangent.truncate().length_squared() - 1.0).abs() <= UNIT_TOLERANCE && tangent.w.abs() == 1.0;
+    is_unit || *tangent == Vec4::ZERO
 }
 
 /// What is wrong with the material slots of a mesh.

@@ -133,6 +133,9 @@ fn check_material(at: &At, material: &Material) -> Result<(), Error> {
             kind.unwrap_or_default()
         )
     })?;
+    at.require(material.blend.is_none(), "rest", || {
+        "is set, but in the profile \"paper\" a surface is of one material; leave out share and rest".to_owned()
+    })?;
     at.require(!material.is_emissive(), "emission", || {
         "is set, but the profile \"paper\" has one light, which is no surface; leave it out".to_owned()
     })?;

@@ -14,7 +14,8 @@ impl Scene {
     pub(super) fn check_texture_coordinates(&self, at: &At, object: &Object) -> Result<(), Error> {
         let Mesh { uvs, .. } = &*object.mesh;
         let mut materials = object.materials.iter().map(|index| &self.materials[*index]);
-        let Some(material) = materials.find(|material| uvs.is_empty() && material.textures.any()) else {
+        let Some(material) = materials.find(|material| uvs.is_empty() && material.all_textures().next().is_some())
+        else {
             return Ok(());
         };
         Err(at.error(
@@ -95,11 +96,9 @@ fn roughness(kind: &MaterialKind) -> Option<f32> {
         MaterialKind::Conductor { roughness, .. }
         | MaterialKind::Dielectric { roughness, .. }
         | MaterialKind::Coated { roughness, .. }
+        | MaterialKind::ThinWalled { roughness, .. }
         | MaterialKind::MetallicRoughness { roughness, .. } => Some(roughness),
-        MaterialKind::Diffuse { .. }
-        | MaterialKind::Phong { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::ThinWalled { .. } => None,
+        MaterialKind::Diffuse { .. } | MaterialKind::Phong { .. } | MaterialKind::Mirror { .. } => None,
     }
 }
 
@@ -135,7 +134,7 @@ fn check_color(
 }
 
 /// Refuses a picture of a share whose extremes, times the factor, are not both from 0 to 1.
-fn check_number(at: &At, key: &'static str, factor: f32, texture: &Option<Texture>) -> Result<(), Error> {
+pub(super) fn check_number(at: &At, key: &'static str, factor: f32, texture: &Option<Texture>) -> Result<(), Error> {
     let Some(texture) = texture else { return Ok(()) };
     check_texture(at, key, texture)?;
     for (which, extreme) in [("least", texture.image.least()), ("greatest", texture.image.most())] {

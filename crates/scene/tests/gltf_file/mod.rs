@@ -123,6 +123,14 @@ pub fn png(width: u32, height: u32, texel: [u8; 4]) -> Vec<u8> {
     bytes
 }
 
+/// A PNG file of a row of texels.
+pub fn png_of(width: u32, texels: &[[u8; 4]]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let height = texels.len() as u32 / width;
+    PngEncoder::new(&mut bytes).write_image(texels.as_flattened(), width, height, ExtendedColorType::Rgba8).unwrap();
+    bytes
+}
+
 fn push(list: &mut Value, value: Value) -> usize {
     let list = list.as_array_mut().unwrap();
     list.push(value);

@@ -1,4 +1,5 @@
-"""Writes what another reader of glTF, trimesh 5.2.0 of PyPI, finds in public files: numbers that the tests compare.
+"""Writes what other readers of glTF find in public files: numbers that the tests compare. Of PyPI, trimesh 5.2.0 reads meshes, and pygltflib 1.16
+materials.
 
     python3 reference.py FOLDER > reference.json
 """
@@ -8,6 +9,7 @@ import pathlib
 import sys
 
 import numpy
+import pygltflib
 import trimesh
 
 
@@ -32,13 +34,49 @@ def of_object(mesh, transform):
     return found
 
 
-def of_file(path):
+def of_meshes(path):
     scene = trimesh.load_scene(path, process=False)
     objects = {}
     for node in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[node]
         objects[node] = of_object(scene.geometry[geometry], transform)
     return objects
+
+
+def of_material(material):
+    """Its numbers, those that the file leaves out by their defaults, and which pictures it has."""
+    model = material.pbrMetallicRoughness or pygltflib.PbrMetallicRoughness()
+    extensions = {name.removeprefix("KHR_materials_"): value for name, value in (material.extensions or {}).items()}
+    volume = extensions.get("volume", {})
+    transmission = extensions.get("transmission", {})
+    pictures = {
+        "color": model.baseColorTexture,
+        "metal": model.metallicRoughnessTexture,
+        "normal": material.normalTexture,
+        "emission": material.emissiveTexture,
+        "transmission": transmission.get("transmissionTexture"),
+    }
+    return {
+        "name": material.name,
+        "color": rounded(model.baseColorFactor),
+        "metallic": model.metallicFactor,
+        "roughness": model.roughnessFactor,
+        "emission": rounded(material.emissiveFactor),
+        "alpha_mode": material.alphaMode,
+        "alpha_cutoff": material.alphaCutoff,
+        "transmission": transmission.get("transmissionFactor", 0),
+        "ior": extensions.get("ior", {}).get("ior", 1.5),
+        "dispersion": extensions.get("dispersion", {}).get("dispersion", 0),
+        "thickness": volume.get("thicknessFactor", 0),
+        "attenuation_color": rounded(volume.get("attenuationColor", [1, 1, 1])),
+        "attenuation_distance": volume.get("attenuationDistance", 0),
+        "pictures": sorted(name for name, picture in pictures.items() if picture),
+    }
+
+
+def of_file(path):
+    materials = pygltflib.GLTF2().load(path).materials
+    return {"objects": of_meshes(path), "materials": [of_material(material) for material in materials]}
 
 
 def main():

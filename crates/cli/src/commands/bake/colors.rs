@@ -56,7 +56,7 @@ impl<'s> Colors<'s> {
             let picture = material.textures.emission.as_ref().map_or(Vec3::ONE, |texture| texture.at(uv).truncate());
             radiance += material.emission * picture;
         }
-        (radiance, material.opacity_at(uv))
+        (radiance, material.opacity_at(uv, vertex_opacity(object, place)))
     }
 }
 
@@ -75,6 +75,14 @@ fn vertex_color(object: &Object, place: SurfacePlace) -> Vec3 {
     }
     let corners = object.mesh.triangles[place.triangle as usize];
     (0..3).map(|corner| place.weights[corner] * object.mesh.colors[corners[corner] as usize]).sum()
+}
+
+/// The opacity of the vertices at a place; 1 for a mesh without.
+fn vertex_opacity(object: &Object, place: SurfacePlace) -> f32 {
+    let opacities = &object.mesh.opacities;
+    let corners = object.mesh.triangles[place.triangle as usize];
+    let of_corner = |corner: usize| opacities.get(corners[corner] as usize).copied().unwrap_or(1.0);
+    (0..3).map(|corner| place.weights[corner] * of_corner(corner)).sum()
 }
 
 /// The share of ambient light that a material sends on.
@@ -116,8 +124,8 @@ pub(super) fn unlit_by_lightmap(material: &Material, bounds_volume: bool) -> Glt
             roughness,
             absorption: bounds_volume.then(|| absorption.to_array()),
         },
-        MaterialKind::ThinWalled { ior, tint } => {
-            GltfSurface::Glass { ior, tint: tint.to_array(), roughness: 0.0, absorption: None }
+        MaterialKind::ThinWalled { ior, tint, roughness } => {
+            GltfSurface::Glass { ior, tint: tint.to_array(), roughness, absorption: None }
         }
         MaterialKind::Conductor { eta, k, roughness } => {
             let color = ((eta - 1.0).powf(2.0) + k * k) / ((eta + 1.0).powf(2.0) + k * k);

@@ -16,6 +16,7 @@ const SPECULAR: &str = "KHR_materials_specular";
 const MOST_REFLECTANCE: f32 = 0.9;
 
 /// The numbers of those extensions.
+#[derive(Clone, Copy)]
 pub(super) struct Layers {
     /// Reflectance along the normal of what is no metal.
     pub(super) reflectance: Vec3,

@@ -10,6 +10,7 @@ use crate::Dispersion;
 const LEAST_ATTENUATION: f32 = 1e-6;
 
 /// The numbers of the metallic-roughness model.
+#[derive(Clone, Copy)]
 pub(super) struct Numbers {
     pub(super) base_color: Vec3,
     pub(super) metallic: f32,
@@ -21,6 +22,11 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
+    /// Those of a part of a surface, which neither shines nor has holes by itself.
+    pub(super) fn without_shine(self) -> Self {
+        Self { emission: Vec3::ZERO, alpha_mode: AlphaMode::Opaque, ..self }
+    }
+
     pub(super) fn of(source: &gltf_json::Material, place: &str) -> Result<Self> {
         let model = &source.pbr_metallic_roughness;
         let [r, g, b, alpha] = model.base_color_factor.0;

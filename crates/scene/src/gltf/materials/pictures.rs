@@ -71,21 +71,25 @@ impl Uses {
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Use> {
-        [&self.color, &self.metal, &self.normal, &self.emission, &self.coat_roughness].into_iter().flatten()
+        let Self { color, metal, normal, normal_scale: _, emission, transmission, coat, coat_roughness } = self;
+        [color, metal, normal, emission, transmission, coat, coat_roughness].into_iter().flatten()
     }
 
-    pub(super) fn by_key(&mut self) -> [(&'static str, &mut Option<Use>); 5] {
+    pub(super) fn by_key(&mut self) -> [(&'static str, &mut Option<Use>); 7] {
         [
             ("baseColorTexture", &mut self.color),
             ("metallicRoughnessTexture", &mut self.metal),
             ("normalTexture", &mut self.normal),
             ("emissiveTexture", &mut self.emission),
+            ("transmissionTexture", &mut self.transmission),
+            ("clearcoatTexture", &mut self.coat),
             ("clearcoatRoughnessTexture", &mut self.coat_roughness),
         ]
     }
 }
 
 /// The pictures of a material.
+#[derive(Clone)]
 pub(super) struct Pictures {
     pub(super) color: Option<Texture>,
     /// The coverage in `color`, if there is any.
