@@ -7,9 +7,9 @@ mod layout;
 
 pub use layout::{
     AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing,
-    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTile, Material, MaterialTextures, NONE, PathParams, PhotonParams,
+    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTexel, MapTile, MapTileRecord, MapWeld, MapWeldPart, Material, MaterialTextures, NONE, PathParams, PhotonParams,
     QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
-    SharedStruct, Sighting, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors,
+    SharedStruct, Sighting, SmoothParams, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors,
     WAVELENGTH_STEPS, ledger, light_kind, light_layer, map_tile, material_kind, paper_refraction, texture_flag,
     triangle_flag,
 };
@@ -43,6 +43,8 @@ pub const CAMERA: Kernel = kernel!("camera", Some("sample_pixels"));
 pub const BAKE: Kernel = kernel!("bake", Some("sample_texels"));
 /// Between the phases: fixed-point flux to irradiance.
 pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
+/// After it: noise is smoothed.
+pub const SMOOTH: Kernel = kernel!("smooth", Some("smooth_maps"));
 /// Estimates the error of each tile of the picture.
 pub const ERRORS: Kernel = kernel!("errors", Some("estimate_errors"));
 /// Shows the film on a texture: `cover_target` and `show_pixel`.
@@ -53,7 +55,7 @@ pub const INTERSECT: Kernel = kernel!("intersect", Some("intersect_rays"));
 pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
 
 /// Every kernel.
-pub const KERNELS: [Kernel; 8] = [PHOTONS, CAMERA, BAKE, RESOLVE, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
+pub const KERNELS: [Kernel; 9] = [PHOTONS, CAMERA, BAKE, RESOLVE, SMOOTH, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
 
 /// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
 pub const WORKGROUP_SIZE: u32 = 64;

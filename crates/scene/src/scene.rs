@@ -90,6 +90,8 @@ pub struct RenderSettings {
     pub guiding: bool,
     /// Whether photons lay their flux over the part of the map that neighbouring photons leave open, and not over four texels.
     pub footprints: bool,
+    /// Whether the irradiance of energy maps is smoothed where it differs by no more than photons' noise.
+    pub map_filter: bool,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// Memory for the sums of energy maps whose size is left open, MiB; the renderer's choice if none.
@@ -149,6 +151,7 @@ impl Default for RenderSettings {
             max_bounces: 8,
             guiding: true,
             footprints: false,
+            map_filter: false,
             map_size: None,
             map_budget: None,
             filter: PixelFilter::default(),
