@@ -3,6 +3,7 @@
 
 import package::film::texels::tile_at;
 import package::film::welds::{between_welds, load_map_texel};
+import package::layout::features::light_group_count;
 import package::layout::map_passes::{texel_irradiance, welded, welds, MapTexel};
 import package::layout::records::{load_map_layer, record_texel};
 import package::layout::scene::NONE;
@@ -22,14 +23,20 @@ struct Neighbour {
     area: f32,
 }
 
-fn irradiance_of(texel: u32, entry: u32) -> vec4<f32> {
-    return textureLoad(rough_irradiance, record_texel(smooth_params.entries * texel + entry), 0);
+/// What a texel of some area holds.
+fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
+    let first = (1u + light_group_count) * texel;
+    let total = textureLoad(rough_irradiance, record_texel(first), 0);
+    if light_group_count == 0u {
+        return Neighbour(total, total, area);
+    }
+    return Neighbour(total, textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
 }
 
-/// What another texel of the tile holds.
+/// What a neighbour holds.
 fn texel_neighbour(texel: u32, chart: u32, entry: u32) -> Neighbour {
     let record = load_map_texel(texel);
-    return Neighbour(irradiance_of(texel, 0u), irradiance_of(texel, entry), select(0.0, record.area, record.chart == chart));
+    return held(texel, entry, select(0.0, record.area, record.chart == chart));
 }
 
 /// What a place of the plane beyond the tile holds: a texel, or what lies between texels.
@@ -88,7 +95,7 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
 
 /// A texel's irradiance and variance after a step.
 fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
-    let texel = Neighbour(irradiance_of(index, 0u), irradiance_of(index, entry), record.area);
+    let texel = held(index, entry, record.area);
     if record.chart == 0u || record.chart == NONE || record.area <= 0.0 {
         return texel.own;
     }
@@ -139,7 +146,7 @@ fn smooth_maps(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
         texel = welds[index].owner;
     }
     let record = load_map_texel(texel);
-    let entries = smooth_params.entries;
+    let entries = 1u + light_group_count;
     for (var entry = 0u; entry < entries; entry++) {
         let value = smoothed(texel, record, entry);
         if is_weld {

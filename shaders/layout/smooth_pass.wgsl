@@ -26,8 +26,6 @@ struct SmoothParams {
     count: u32,
     /// Workgroups along x.
     groups_x: u32,
-    /// Entries of a texel: one, or all light's and those of each light group.
-    entries: u32,
     /// 1 for a dispatch over welds, which comes first.
     of_welds: u32,
     /// Cells from a texel to those that it is compared with.
@@ -38,6 +36,8 @@ struct SmoothParams {
     padding_0: u32,
     /// Unused.
     padding_1: u32,
+    /// Unused.
+    padding_2: u32,
 }
 
 @group(2) @binding(0) var<uniform> smooth_params: SmoothParams;

@@ -471,7 +471,7 @@ shared_structs! {
         /// Index of its MapTileRecord.
         tile: u32,
     }
-    
+
     /// A place at which texels of several tiles meet.
     struct MapWeld {
         /// The texel of the coarsest tile there.
@@ -483,7 +483,7 @@ shared_structs! {
         /// The area of these parts, m².
         area: f32,
     }
-    
+
     /// A part of a weld or a texel.
     struct MapWeldPart {
         /// Its index: of a texel, if it is of a weld; of a weld, if it is of a texel.
@@ -529,15 +529,13 @@ shared_structs! {
         /// Its height.
         cell_y: f32,
     }
-    
+
     /// One dispatch of the smooth pass.
     struct SmoothParams {
         /// Texels, or welds, that the dispatch smooths.
         count: u32,
         /// Workgroups along x.
         groups_x: u32,
-        /// Entries of a texel: one, or all light's and those of each light group.
-        entries: u32,
         /// 1 for a dispatch over welds, which comes first.
         of_welds: u32,
         /// Cells from a texel to those that it is compared with.
@@ -548,6 +546,8 @@ shared_structs! {
         padding_0: u32,
         /// Unused.
         padding_1: u32,
+        /// Unused.
+        padding_2: u32,
     }
     /// A ray asked about.
     struct QueryRay {

@@ -7,11 +7,11 @@ mod layout;
 
 pub use layout::{
     AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing,
-    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTexel, MapTile, MapTileRecord, MapWeld, MapWeldPart, Material, MaterialTextures, NONE, PathParams, PhotonParams,
-    QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField,
-    SharedStruct, Sighting, SmoothParams, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors,
-    WAVELENGTH_STEPS, ledger, light_kind, light_layer, map_tile, material_kind, paper_refraction, texture_flag,
-    triangle_flag,
+    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTexel, MapTile, MapTileRecord, MapWeld, MapWeldPart, Material,
+    MaterialTextures, NONE, PathParams, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
+    SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SmoothParams, SurfaceTexture,
+    TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger, light_kind,
+    light_layer, map_tile, material_kind, paper_refraction, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.

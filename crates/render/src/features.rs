@@ -107,6 +107,11 @@ impl Features {
         Self { light_layers: false, data_layers: false, halves: true, ..self }
     }
 
+    /// What the filter of energy maps needs.
+    pub fn for_filter(self) -> Self {
+        Self { light_groups: self.light_groups, ..Self::default() }
+    }
+
     /// The same for paths that begin at a lightmap's texels.
     pub fn for_baking(self) -> Self {
         Self { sightings: false, light_layers: true, data_layers: false, ..self }

@@ -4,12 +4,7 @@ use std::sync::Arc;
 
 use diacaustic_surface::{MapLayout, MapTiles, TexelSurface, Welds};
 
-use crate::{
-    Error, MapSize,
-    map_plan::MapPlan,
-    map_sums::SumsFormat,
-    tile_choice::TileChoice,
-};
+use crate::{Error, MapSize, map_plan::MapPlan, map_sums::SumsFormat, tile_choice::TileChoice};
 
 /// One object's map within the buffers of all maps.
 #[derive(Clone, Debug)]

@@ -5,6 +5,7 @@ use diacaustic_shaders::{RECORDS_WIDTH_BITS, RESOLVE, ResolveParams, SMOOTH, Smo
 
 use crate::{
     EnergyMap, Error,
+    features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose, texture_bytes},
     map_placement::MapPlacement,
     map_texels::MapTexels,
@@ -38,6 +39,9 @@ pub(crate) struct SumsFormat {
 }
 
 impl SumsFormat {
+    /// That of no maps.
+    pub const NONE: Self = Self { groups: 1, has_squares: false };
+
     pub fn new(settings: &RenderSettings, groups: usize) -> Self {
         Self { groups: groups as u64, has_squares: settings.map_filter }
     }
@@ -93,6 +97,8 @@ pub(crate) struct EnergyMaps {
     /// What passes write into: irradiance, and in scenes with a filter the other texture in turn with it.
     targets: Vec<Target>,
     filter_params: wgpu::Buffer,
+    /// The pipeline of the filter, if there is one.
+    filter: Option<wgpu::ComputePipeline>,
 }
 
 /// The words of the sums, three or four for each texel.
@@ -119,7 +125,7 @@ pub(crate) struct ResolvePass {
     sums_layout: wgpu::BindGroupLayout,
     filter_layout: wgpu::BindGroupLayout,
     resolve: wgpu::ComputePipeline,
-    smooth: wgpu::ComputePipeline,
+    smooth: Pipelines,
 }
 
 /// What photons so far are divided by.
@@ -144,7 +150,7 @@ impl ResolvePass {
         let sums_layout = layout("resolve", &[Binding::Uniform, Binding::Read, Binding::Read]);
         let filter_layout = layout("smooth", &[Binding::Uniform, Binding::Read, Binding::Texels]);
         let resolve = gpu.compute_pipeline(RESOLVE, &[scene_layout, &maps_layout, &sums_layout]);
-        let smooth = gpu.compute_pipeline(SMOOTH, &[scene_layout, &maps_layout, &filter_layout]);
+        let smooth = Pipelines::new(SMOOTH, &[scene_layout, &maps_layout, &filter_layout]);
         Self { maps_layout, sums_layout, filter_layout, resolve, smooth }
     }
 
@@ -163,13 +169,13 @@ impl ResolvePass {
             gpu.queue.write_buffer(&maps.resolve_params, 0, bytemuck::bytes_of(&params));
             gpu.dispatch(&self.resolve, &[of.scene, &maps.targets[0].written, &maps.resolve_group], size);
         }
-        if maps.format.has_squares {
-            self.filter(gpu, maps, of);
+        if let Some(pipeline) = maps.filter.as_ref().filter(|_| of.photons > 0) {
+            Self::filter(gpu, maps, pipeline, of);
         }
     }
 
     /// Filters irradiance, from the first target to the other and back, so that it ends in the second.
-    fn filter(&self, gpu: &Gpu, maps: &EnergyMaps, of: Resolving) {
+    fn filter(gpu: &Gpu, maps: &EnergyMaps, pipeline: &wgpu::ComputePipeline, of: Resolving) {
         for step in 0..FILTER_STEPS {
             let from = step as usize % 2;
             let variance_factor = if step == 0 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
@@ -178,7 +184,6 @@ impl ResolvePass {
                 let params = SmoothParams {
                     count: count as u32,
                     groups_x: size[0],
-                    entries: maps.format.entries() as u32,
                     of_welds,
                     distance: 1 << step,
                     variance_factor,
@@ -186,7 +191,7 @@ impl ResolvePass {
                 };
                 gpu.queue.write_buffer(&maps.filter_params, 0, bytemuck::bytes_of(&params));
                 let groups = [of.scene, &maps.targets[1 - from].written, &maps.targets[from].read];
-                gpu.dispatch(&self.smooth, &groups, size);
+                gpu.dispatch(pipeline, &groups, size);
             }
         }
     }
@@ -203,17 +208,20 @@ impl EnergyMaps {
     /// Maps for each light group, one after the other.
     pub fn new(
         gpu: &Gpu,
-        pass: &ResolvePass,
+        pass: &mut ResolvePass,
         placements: Vec<Option<MapPlacement>>,
         format: SumsFormat,
+        features: Features,
     ) -> Result<Self, Error> {
+        let filter = format.has_squares.then(|| pass.smooth.get(gpu, features.for_filter()));
         let purpose = if format.groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
         let words_bytes = format.groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * format.words_bytes();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
         let texels = MapTexels::new(gpu, &placements)?;
         let welded = gpu.zeroed(WELDED, texels.weld_count * format.entries() * 16)?;
-        let (resolve_params, filter_params) = (gpu.uniform::<ResolveParams>("resolve"), gpu.uniform::<SmoothParams>("smooth"));
+        let (resolve_params, filter_params) =
+            (gpu.uniform::<ResolveParams>("resolve"), gpu.uniform::<SmoothParams>("smooth"));
         let resolve_group = gpu.bind(&pass.sums_layout, &[&resolve_params, &sums.low, &sums.high]);
         let target = |purpose: Purpose| {
             let usage = wgpu::TextureUsages::STORAGE_BINDING
@@ -258,6 +266,7 @@ impl EnergyMaps {
             resolve_group,
             targets,
             filter_params,
+            filter,
         })
     }
 

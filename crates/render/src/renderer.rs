@@ -238,7 +238,7 @@ impl Renderer {
         if !self.is_dry && photons.can_emit() && (scene.settings.guiding || is_open) {
             let start = Instant::now();
             let group = &buffers.bind_group;
-            let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), SumsFormat { groups: 1, has_squares: false })?;
+            let empty = EnergyMaps::new(gpu, &mut self.resolve_pass, Vec::new(), SumsFormat::NONE, host.features)?;
             sightings = samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &empty)?;
             flights = photons.fly_pilots(gpu, &self.photon_pass, group, &empty, &host.maps, &sightings.list)?;
             report.pilot = Some(PilotReport { time: start.elapsed(), ..flights.report });
@@ -254,7 +254,7 @@ impl Renderer {
         let reserve = if self.is_dry && is_open { budget.saturating_sub(taken) * format.bytes_on_device() } else { 0 };
         let placements = place_maps(host.maps, choice, format, &gpu.device.limits())?;
         report.maps_time += start.elapsed();
-        let maps = EnergyMaps::new(gpu, &self.resolve_pass, placements, format)?;
+        let maps = EnergyMaps::new(gpu, &mut self.resolve_pass, placements, format, host.features)?;
         buffers.place_maps(gpu, &self.scene_layout, &maps)?;
         photons.fill(gpu, &self.photon_pass, &maps, groups)?;
         samples.show(gpu, &self.camera_pass, &maps)?;

@@ -151,7 +151,7 @@ impl Default for RenderSettings {
             max_bounces: 8,
             guiding: true,
             footprints: false,
-            map_filter: false,
+            map_filter: true,
             map_size: None,
             map_budget: None,
             filter: PixelFilter::default(),

@@ -23,4 +23,4 @@ pub use texel_area::{TexelChart, TexelSurface, texel_areas, texel_surfaces};
 pub use tile::{FINEST_LEVEL, MapSquare, MapTile, MapTiles};
 pub use touching::{RAY_OFFSET, separate_touching};
 pub use triangles::{WorldTriangle, world_triangles};
-pub use weld::{Weld, Welds, WeldPart};
+pub use weld::{Weld, WeldPart, Welds};

@@ -42,11 +42,11 @@ type Place = [u64; 2];
 
 impl Welds {
     /// The welds of a map's tiles, whose texels have the given surfaces. Texels are joined where they are of one chart. Tiles whose cells are
-    /// no power of two, as of a map of a stated size, are alone in their layer.
+    /// no power of two along both axes, as of a map of a stated size, are alone in their layer.
     pub fn new(tiles: &MapTiles, texels: &[TexelSurface]) -> Self {
         let mut welds = Self::default();
-        let is_joined = |cells: &u32| cells.is_power_of_two() && *cells <= 1 << STEP_BITS;
-        if !tiles.tiles.iter().all(|tile| tile.cells.iter().all(is_joined)) {
+        let is_joined = |[x, y]: [u32; 2]| x == y && x.is_power_of_two() && x <= 1 << STEP_BITS;
+        if !tiles.tiles.iter().all(|tile| is_joined(tile.cells)) {
             return welds;
         }
         for layer in tiles.tiles.chunk_by(|a, b| a.square.layer == b.square.layer).filter(|layer| layer.len() > 1) {
@@ -151,9 +151,7 @@ impl<'t> Joints<'t> {
     fn add_to(&self, welds: &mut Welds) {
         let first_weld = welds.welds.len();
         let mut weld_of: HashMap<usize, usize> = HashMap::new();
-        let is_alone = |number: usize| {
-            self.places[number].1.len() == 1 && self.parts[number].len() == 1
-        };
+        let is_alone = |number: usize| self.places[number].1.len() == 1 && self.parts[number].len() == 1;
         let hung_on: Vec<bool> = {
             let mut hung_on = vec![false; self.places.len()];
             let hanging = self.parts.iter().enumerate().filter(|(number, parts)| parts[0].0 != *number);
@@ -166,7 +164,8 @@ impl<'t> Joints<'t> {
             if is_alone(number) && !hung_on[number] || parts.iter().any(|&(free, _)| self.chart(free) != Some(chart)) {
                 continue;
             }
-            let joined = texels.iter().filter(|(texel, _)| self.surfaces[*texel as usize].chart == TexelChart::One(chart));
+            let joined =
+                texels.iter().filter(|(texel, _)| self.surfaces[*texel as usize].chart == TexelChart::One(chart));
             for &(texel, _) in joined {
                 let mut links = Vec::with_capacity(parts.len());
                 for &(free, weight) in parts {
@@ -203,4 +202,122 @@ fn border(number: usize, tile: &MapTile) -> impl Iterator<Item = (Place, u64, us
     let along = (0..=rows).flat_map(move |j| (0..=columns).map(move |i| (i, j)));
     let on_border = along.filter(move |&(i, j)| i == 0 || i == columns || j == 0 || j == rows);
     on_border.map(move |(i, j)| ([x + i * step, y + j * step], first + j * (columns + 1) + i, number))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{MapLayout, MapSquare};
+
+    const LAYOUT: MapLayout = MapLayout {
+        width: 33,
+        height: 17,
+        layers: 1,
+        corners: Vec::new(),
+        charts: Vec::new(),
+        chart_count: 1,
+        cell_count: 0,
+        metres_per_texel: 1.0,
+    };
+
+    /// Tiles of a quadtree over two squares, whose leaves follow `splits`, and have up to 8 cells along a side.
+    fn tree(splits: &[bool]) -> MapTiles {
+        let mut open: Vec<_> = (0..2).map(|x| MapSquare { layer: 0, level: 0, x, y: 0 }).collect();
+        let (mut leaves, mut splits) = (Vec::new(), splits.iter());
+        while let Some(square) = open.pop() {
+            if square.level < 4 && splits.next() == Some(&true) {
+                open.extend(square.children());
+            } else {
+                leaves.push((square, [1 << ((square.x + 3 * square.y) % 4); 2]));
+            }
+        }
+        MapTiles::new(&LAYOUT, [2, 1], leaves.into_iter())
+    }
+
+    /// Texels of a plane that is all of one chart.
+    fn flat(tiles: &MapTiles, chart: impl Fn(DVec2) -> u32) -> Vec<TexelSurface> {
+        let mut texels = Vec::new();
+        for tile in &tiles.tiles {
+            let cell = tiles.cell_size(tile);
+            for (j, i) in (0..=tile.cells[1]).flat_map(|j| (0..=tile.cells[0]).map(move |i| (j, i))) {
+                let half = |at: u32, last: u32| if at == 0 || at == last { 0.5 } else { 1.0 };
+                let area = cell.element_product() * half(i, tile.cells[0]) * half(j, tile.cells[1]);
+                let place = tiles.origin(tile) + cell * DVec2::new(i.into(), j.into());
+                texels.push(TexelSurface { area, chart: TexelChart::One(chart(place)) });
+            }
+        }
+        texels
+    }
+
+    /// What a tile shows at a place on it.
+    fn shown(tiles: &MapTiles, tile: &MapTile, irradiance: &[f64], place: DVec2) -> f64 {
+        let last = DVec2::new(tile.cells[0].into(), tile.cells[1].into()) - 1.0;
+        let at = (place - tiles.origin(tile)) / tiles.cell_size(tile);
+        let cell = at.floor().clamp(DVec2::ZERO, last);
+        let f = at - cell;
+        let columns = tile.cells[0] as usize + 1;
+        let first = tile.first_texel as usize + cell.y as usize * columns + cell.x as usize;
+        let row = |first: usize| irradiance[first] * (1.0 - f.x) + irradiance[first + 1] * f.x;
+        row(first) * (1.0 - f.y) + row(first + columns) * f.y
+    }
+
+    proptest! {
+        /// Whatever flux lies on texels: it is kept, even light stays even, and where two tiles meet both show the same.
+        #[test]
+        fn tiles_of_any_size_join(splits in prop::collection::vec(prop::bool::ANY, 60), seed in 1u64..1_000_000) {
+            let tiles = tree(&splits);
+            let texels = flat(&tiles, |_| 0);
+            let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
+            let welds = Welds::new(&tiles, &texels);
+            let even = welds.irradiance(&areas.iter().map(|area| 3.0 * area).collect::<Vec<f64>>(), &areas);
+            prop_assert!(even.iter().all(|value| (value - 3.0).abs() < 1e-12));
+
+            let mut state = seed;
+            let mut random = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 40) as f64 / f64::from(1u32 << 24)
+            };
+            let flux: Vec<f64> = areas.iter().map(|area| area * random()).collect();
+            let irradiance = welds.irradiance(&flux, &areas);
+            let kept: f64 = irradiance.iter().zip(&areas).map(|(value, area)| value * area).sum();
+            let total: f64 = flux.iter().sum();
+            prop_assert!((kept / total - 1.0).abs() < 1e-12, "{kept} of {total}");
+            let ends = |tile: &MapTile| (tiles.origin(tile), tiles.origin(tile) + tiles.square_size(tile.square.level));
+            for (one, other) in tiles.tiles.iter().flat_map(|a| tiles.tiles.iter().map(move |b| (a, b))) {
+                let ((low, high), (other_low, other_high)) = (ends(one), ends(other));
+                let (low, high) = (low.max(other_low), high.min(other_high));
+                if one.square == other.square || low.cmpgt(high).any() {
+                    continue;
+                }
+                for part in [0.0, 0.13, 0.5, 0.77, 1.0] {
+                    let place = low.lerp(high, part);
+                    let sides = [one, other].map(|tile| shown(&tiles, tile, &irradiance, place));
+                    prop_assert!((sides[0] - sides[1]).abs() < 1e-9, "{place}: {sides:?}");
+                }
+            }
+        }
+
+        /// Texels of several charts keep what is theirs.
+        #[test]
+        fn charts_are_not_joined(splits in prop::collection::vec(prop::bool::ANY, 60), border in 1.0..31.0) {
+            let tiles = tree(&splits);
+            let texels = flat(&tiles, |place| u32::from(place.x > border));
+            let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
+            let flux = texels.iter().map(|texel| if texel.chart == TexelChart::One(0) { texel.area } else { 0.0 });
+            let irradiance = Welds::new(&tiles, &texels).irradiance(&flux.collect::<Vec<f64>>(), &areas);
+            for (texel, value) in texels.iter().zip(irradiance) {
+                let own = if texel.chart == TexelChart::One(0) { 1.0 } else { 0.0 };
+                prop_assert!((value - own).abs() < 1e-12, "{texel:?}: {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_of_one_tile_has_nothing_to_join() {
+        let tiles = MapTiles::dense(&LAYOUT);
+        assert_eq!(Welds::new(&tiles, &flat(&tiles, |_| 0)), Welds::default());
+    }
 }
