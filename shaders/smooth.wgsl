@@ -10,7 +10,7 @@ import package::layout::scene::NONE;
 import package::layout::smooth_pass::{map_tiles, rough_irradiance, smooth_params};
 
 /// How much two texels' squared difference may exceed the sum of their variances for 1/e of the exchange.
-const TOLERANCE: f32 = 10.0;
+const TOLERANCE: f32 = 15.0;
 /// A difference of places, in cells, that is rounding.
 const SAME_PLACE: f32 = 0.01;
 
@@ -78,6 +78,9 @@ struct Exchange {
     variance: f32,
     /// Share that the texel gives away.
     given: f32,
+    /// Sums over the neighbours there are: of kernel weights, and by these of variances for an area of 1 m².
+    kernel: f32,
+    around: f32,
 }
 
 /// Adds the exchange of a texel with neighbour k of nine, row by row: as much flux as the other gives this one, for each weighs by the smaller
@@ -91,6 +94,8 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
     (*exchange).change += weight * (other.own.xyz - texel.own.xyz);
     (*exchange).variance += weight * weight * other.own.w;
     (*exchange).given += weight;
+    (*exchange).kernel += kernel;
+    (*exchange).around += kernel * other.own.w * other.area;
 }
 
 /// A texel's irradiance and variance after a step.
@@ -128,6 +133,10 @@ fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
         if other.area > 0.0 {
             exchange_with(&exchange, k, texel, other);
         }
+    }
+    if smooth_params.only_variance != 0u {
+        let around = (0.25 * texel.own.w * texel.area + exchange.around) / (0.25 + exchange.kernel);
+        return vec4<f32>(texel.own.xyz, around / texel.area);
     }
     let kept = 1.0 - exchange.given;
     let variance = kept * kept * texel.own.w + exchange.variance;

@@ -542,12 +542,10 @@ shared_structs! {
         distance: i32,
         /// Factor on the variance that the smoothed texels have if their errors do not depend on each other.
         variance_factor: f32,
+        /// 1 for a dispatch that smooths variance alone: few photons say little of it.
+        only_variance: u32,
         /// Unused.
-        padding_0: u32,
-        /// Unused.
-        padding_1: u32,
-        /// Unused.
-        padding_2: u32,
+        padding: u32,
     }
     /// A ray asked about.
     struct QueryRay {

@@ -49,8 +49,8 @@ fn a_filtered_map_holds_the_flux_of_its_photons() {
 /// Relative squared deviation of a map from another, over the bright part of that.
 fn error(map: &EnergyMap, truth: &EnergyMap) -> f64 {
     let truths: Vec<f64> = (0..truth.sums.len()).map(|texel| truth.irradiance(texel).y).collect();
-    let lit: Vec<usize> = (0..truths.len()).filter(|&texel| truths[texel] > 0.5).collect();
-    assert!(lit.len() > 200, "{} texels are lit", lit.len());
+    let lit: Vec<usize> = (0..truths.len()).filter(|&texel| truths[texel] > 0.25).collect();
+    assert!(lit.len() > 100, "{} texels are lit", lit.len());
     let square = |&texel: &usize| (map.irradiance(texel).y - truths[texel]).powi(2) / truths[texel].powi(2);
     lit.iter().map(square).sum::<f64>() / lit.len() as f64
 }
@@ -98,10 +98,11 @@ fn no_light_leaves_its_chart() {
             }
         }
         assert!(dark.iter().all(|&irradiance| irradiance == 0.0), "{settings}: light on a side of the box");
-        assert!(
-            lit.len() > 300 && lit.iter().all(|&irradiance| (irradiance - 3.0).abs() < 0.75),
-            "{settings}: {lit:?}"
-        );
+        let mean = lit.iter().sum::<f64>() / lit.len() as f64;
+        let off = lit.iter().filter(|&irradiance| (irradiance - 3.0).abs() > 0.3).count();
+        println!("{settings}: {mean} W/m² on the top, {off} of {} places are not even", lit.len());
+        assert!((mean - 3.0).abs() < 0.05, "{settings}: {mean} W/m² on the top");
+        assert!(lit.len() > 300 && off < lit.len() / 12, "{settings}: {off} of {} places are not even", lit.len());
     }
 }
 

@@ -15,6 +15,8 @@ use crate::{
 const GROUP_ALIGNMENT: u64 = 64;
 /// Steps of the filter: a texel is compared with those that are 1, 2, 4, … cells away.
 const FILTER_STEPS: u32 = 5;
+/// The passes, one more than steps, end in the target where they begin.
+const _: () = assert!(FILTER_STEPS % 2 == 1);
 /// What photons that fall on four texels each make of the variance of a mean over many texels, against that of independent texels: the squares
 /// of bilinear weights sum to (2/3)² on average, their sum to 1.
 const BILINEAR_VARIANCE: f32 = 2.25;
@@ -94,7 +96,7 @@ pub(crate) struct EnergyMaps {
     format: SumsFormat,
     resolve_params: wgpu::Buffer,
     resolve_group: wgpu::BindGroup,
-    /// What passes write into: irradiance, and in scenes with a filter the other texture in turn with it.
+    /// What passes write into: irradiance, and in scenes with a filter a second texture in turn with it.
     targets: Vec<Target>,
     filter_params: wgpu::Buffer,
     /// The pipeline of the filter, if there is one.
@@ -174,19 +176,20 @@ impl ResolvePass {
         }
     }
 
-    /// Filters irradiance, from the first target to the other and back, so that it ends in the second.
+    /// Filters irradiance, from one target to the other and back: first its variance alone, then in steps of growing distance.
     fn filter(gpu: &Gpu, maps: &EnergyMaps, pipeline: &wgpu::ComputePipeline, of: Resolving) {
-        for step in 0..FILTER_STEPS {
-            let from = step as usize % 2;
-            let variance_factor = if step == 0 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
+        for pass in 0..=FILTER_STEPS {
+            let from = pass as usize % 2;
+            let variance_factor = if pass == 1 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
             for (of_welds, count) in maps.dispatches() {
                 let size = workgroups(count);
                 let params = SmoothParams {
                     count: count as u32,
                     groups_x: size[0],
                     of_welds,
-                    distance: 1 << step,
+                    distance: 1 << pass.saturating_sub(1),
                     variance_factor,
+                    only_variance: u32::from(pass == 0),
                     ..Default::default()
                 };
                 gpu.queue.write_buffer(&maps.filter_params, 0, bytemuck::bytes_of(&params));
@@ -253,7 +256,7 @@ impl EnergyMaps {
         let purposes = [IRRADIANCE, FILTERED].into_iter().take(if format.has_squares { 2 } else { 1 });
         let targets = purposes.map(target).collect::<Result<Vec<_>, Error>>()?;
         let textures: u64 = targets.iter().map(|target| texture_bytes(&target.texture)).sum();
-        let shown = targets.last().map(|target| target.texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        let shown = targets.first().map(|target| target.texture.create_view(&wgpu::TextureViewDescriptor::default()));
         Ok(Self {
             bytes: sums.low.size() + sums.high.size() + texels.bytes + welded.size() + textures,
             irradiance: shown.expect("there is a target"),
@@ -326,7 +329,7 @@ impl EnergyMaps {
         if self.format.has_squares {
             let entries = self.format.entries();
             let range = entries * placement.first_texel..entries * (placement.first_texel + count);
-            let texels: Vec<[f32; 4]> = gpu.read_texels(&self.targets[1].texture, range)?;
+            let texels: Vec<[f32; 4]> = gpu.read_texels(&self.targets[0].texture, range)?;
             map.smoothed = Some(texels.iter().step_by(entries as usize).map(|&[r, g, b, _]| [r, g, b]).collect());
         }
         Ok(Some(map))
