@@ -71,7 +71,7 @@ impl SumsFormat {
     /// The most texels of all maps of a light group that a device can hold.
     pub fn most_texels(self, limits: &wgpu::Limits) -> u64 {
         let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let of_sums = (bindable / (self.groups * self.words_bytes())).saturating_sub(GROUP_ALIGNMENT);
+        let of_sums = bindable / (self.groups * self.words_bytes()) / GROUP_ALIGNMENT * GROUP_ALIGNMENT;
         let of_textures = (u64::from(limits.max_texture_dimension_2d) << RECORDS_WIDTH_BITS) / self.entries();
         of_sums.min(of_textures)
     }
