@@ -4,12 +4,12 @@
 import package::bsdf::specular::outer_interface;
 import package::geometry::traverse::Hit;
 import package::layout::bake_pass::{bake_params, bake_texels, cells, BakeTexel};
-import package::layout::path_pass::{film, path_params, Sighting, LAYER_EMISSION};
+import package::layout::path_pass::{film, path_params, LAYER_EMISSION};
 import package::layout::records::{load_corners, load_triangle};
 import package::layout::scene::{Material, Triangle, MATERIAL_DIFFUSE, MATERIAL_RECEIVER, NONE};
 import package::medium::media::medium_ior;
 import package::path::advance::{follow, interact};
-import package::path::state::Path;
+import package::path::state::{no_sighting, Path};
 import package::path::vertex::Vertex;
 import package::sampling::hash::combine;
 import package::sampling::sobol::{padded_2, sobol_5};
@@ -117,7 +117,7 @@ fn sample_texels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     path.sample = path_params.sample_index;
     path.pixel = index;
     path.layer = LAYER_EMISSION;
-    path.sighting = Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0);
+    path.sighting = no_sighting();
     let vertex = white_vertex(place.hit, texel.side, path.media, medium_ior(path.media, path.wavelength));
     path.direction = -vertex.point.n_g;
     // What reflects all light sends 1/π of its irradiance along each direction.

@@ -4,11 +4,11 @@
 import package::film::layers::add_to_squares;
 import package::layout::camera_pass::{camera_params, halves, tiles};
 import package::layout::features::{has_halves, notes_sightings};
-import package::layout::path_pass::{film, path_params, sightings, Sighting, LAYER_EMISSION};
+import package::layout::path_pass::{film, path_params, sightings, LAYER_EMISSION};
 import package::layout::records::record_texel;
-import package::layout::scene::NONE;
 import package::path::advance::follow;
-import package::path::state::Path;
+import package::path::irradiance_cache::end_tail;
+import package::path::state::{no_sighting, Path};
 import package::sampling::hash::combine;
 import package::sampling::sobol::sobol_5;
 import package::sampling::warp::{disc, PI};
@@ -27,8 +27,14 @@ fn filter_offset(u: f32) -> f32 {
 /// The camera ray of this sample of a pixel.
 fn start_path(pixel: vec2<u32>) -> Path {
     let index = pixel.y * camera_params.width + pixel.x;
-    let seed = combine(path_params.seed, index);
-    let sample = u32(film.pixels[index].w);
+    var seed = combine(path_params.seed, index);
+    var sample = u32(film.pixels[index].w);
+    if notes_sightings {
+        // Neighbours divide what they see among them.
+        let block = pixel >> vec2<u32>(2u);
+        seed = combine(path_params.seed, block.y * camera_params.width + block.x);
+        sample = 16u * sample + interleave(pixel & vec2<u32>(3u));
+    }
     let numbers = sobol_5(sample, seed);
     let u = numbers.first;
     let size = vec2<f32>(f32(camera_params.width), f32(camera_params.height));
@@ -49,7 +55,7 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.sample = sample;
     path.pixel = index;
     path.layer = LAYER_EMISSION;
-    path.sighting = Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0);
+    path.sighting = no_sighting();
     return path;
 }
 
@@ -64,6 +70,11 @@ fn tile_of(group: vec2<u32>, groups_x: u32) -> vec2<u32> {
     }
     let listed = textureLoad(tiles, record_texel(place >> 2u), 0)[place & 3u];
     return vec2<u32>(listed & 0xffffu, listed >> 16u);
+}
+
+/// The place of a point of 4 × 4 along a Z-order curve.
+fn interleave(at: vec2<u32>) -> u32 {
+    return (at.x & 1u) | ((at.y & 1u) << 1u) | ((at.x & 2u) << 1u) | ((at.y & 2u) << 2u);
 }
 
 /// The pixel of an invocation: along a Z-order curve within its tile of 8 × 8, so that neighbouring lanes see alike.
@@ -85,6 +96,9 @@ fn sample_pixels(
     // too, which on software adapters is more.
     var path = start_path(pixel);
     follow(&path);
+    if notes_sightings {
+        end_tail(&path);
+    }
     let index = path.pixel;
     add_to_squares(index, film.pixels[index], path.radiance);
     if has_halves && (path.sample & (path.sample - 1u)) == 0u {
@@ -93,7 +107,6 @@ fn sample_pixels(
     }
     film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {
-        path.sighting.radiance = dot(path.radiance, vec3<f32>(1.0 / 3.0));
         sightings[index] = path.sighting;
     }
 }

@@ -11,6 +11,8 @@ import package::layout::smooth_pass::{map_tiles, rough_irradiance, smooth_params
 
 /// How much two texels' squared difference may exceed the sum of their variances for 1/e of the exchange.
 const TOLERANCE: f32 = 15.0;
+/// How much larger the neighbours of a scrap are than it, on average.
+const SCRAP: f32 = 2.5;
 /// A difference of places, in cells, that is rounding.
 const SAME_PLACE: f32 = 0.01;
 
@@ -81,6 +83,8 @@ struct Exchange {
     /// Sums over the neighbours there are: of kernel weights, and by these of variances for an area of 1 m².
     kernel: f32,
     around: f32,
+    /// The same sum of their areas.
+    area: f32,
 }
 
 /// Adds the exchange of a texel with neighbour k of nine, row by row: as much flux as the other gives this one, for each weighs by the smaller
@@ -96,6 +100,7 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
     (*exchange).given += weight;
     (*exchange).kernel += kernel;
     (*exchange).around += kernel * other.own.w * other.area;
+    (*exchange).area += kernel * other.area;
 }
 
 /// A texel's irradiance and variance after a step.
@@ -138,9 +143,14 @@ fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
         let around = (0.25 * texel.own.w * texel.area + exchange.around) / (0.25 + exchange.kernel);
         return vec4<f32>(texel.own.xyz, around / texel.area);
     }
-    let kept = 1.0 - exchange.given;
-    let variance = kept * kept * texel.own.w + exchange.variance;
-    return vec4<f32>(texel.own.xyz + exchange.change, smooth_params.variance_factor * variance);
+    // A scrap at a chart's border is noisy and has few neighbours: it takes as much as one with all eight.
+    var boost = 1.0;
+    if exchange.area > SCRAP * texel.area * exchange.kernel {
+        boost = 0.75 / exchange.kernel;
+    }
+    let kept = 1.0 - boost * exchange.given;
+    let variance = kept * kept * texel.own.w + boost * boost * exchange.variance;
+    return vec4<f32>(texel.own.xyz + boost * exchange.change, smooth_params.variance_factor * variance);
 }
 
 @compute @workgroup_size(64)

@@ -33,6 +33,8 @@ override has_guide: bool = true;
 override paper_refraction: u32 = 1u;
 /// Whether camera paths note which texels they see.
 override notes_sightings: bool = false;
+/// Whether paths end at receivers whose bounced light the irradiance cache knows.
+override has_irradiance_cache: bool = false;
 /// Whether light is kept apart by how it came.
 override has_light_layers: bool = false;
 /// Whether it is kept what pixels show, and how much their samples vary.

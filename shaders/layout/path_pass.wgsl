@@ -61,6 +61,11 @@ struct Sighting {
     weight: f32,
     /// Radiance that the path gathered, W/(m² sr), mean of the channels.
     radiance: f32,
+    /// Radiance that came to the first place by the path's next direction, W/(m² sr), but for what next-event estimation and the maps bring
+    /// there. Directions are drawn in proportion to the cosine, so that its mean times π is irradiance.
+    bounced: vec3<f32>,
+    /// One over the distance to what was met there, 1/m; 0 for nothing, negative if the path did not go on from its first place.
+    inverse_distance: f32,
 }
 
 /// Sums over a pixel's samples of what they met first, and their deviations.
@@ -104,3 +109,6 @@ const LIGHT_LAYERS: u32 = 4u;
 @group(2) @binding(4) var<storage, read_write> data_layers: array<DataLayers>;
 /// For each pixel the sums of each light group's light, then of each one's caustic, then of light without group, W/(m² sr); the last component is unused.
 @group(2) @binding(5) var<storage, read_write> group_layers: array<vec4<f32>>;
+/// The irradiance cache. First for each layer of a map, two for each object, its grid: index of its first node, nodes along x and along y, 0
+/// without a grid, and nodes for each unit of the plane. Then the nodes: irradiance by bounced light, W/m², and 1 where it is known.
+@group(2) @binding(6) var<storage, read> irradiance_cache: array<vec4<f32>>;

@@ -15,6 +15,7 @@ import package::path::energy_map::add_map;
 import package::path::first_surface::keep_first_vertex;
 import package::path::gather::{add_emission, gather_light};
 import package::path::go_on::go_on;
+import package::path::irradiance_cache::{cached_irradiance, enter_tail};
 import package::path::state::{pass_caster, Path};
 import package::path::vertex::{vertex_at, Vertex};
 
@@ -30,7 +31,7 @@ fn interact(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     } else if gathers {
         (*path).gathered += 1u;
     }
-    go_on(path, vertex);
+    go_on(path, vertex, cached_irradiance(path, vertex, hit, object));
 }
 
 /// Lets a path meet the triangle at `hit`.
@@ -81,6 +82,8 @@ fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
     if !(*path).goes_on {
         return;
     }
+    let distance = min(hit.t, sphere.t);
+    enter_tail(path, select(0.0, 1.0 / max(distance, 1e-6), distance < FAR));
     if hit.triangle != NONE {
         (*path).beta *= transmittance((*path).media, hit.t, (*path).wavelength);
         meet_surface(path, hit);

@@ -2,14 +2,16 @@
 
 import package::bsdf::base::gloss_reflectance;
 import package::bsdf::specular::{evaluate_specular, scatter_specular};
+import package::film::layers::add_to_layer;
 import package::geometry::surface::leave;
-import package::layout::features::{paper_refraction, PAPER_NONE};
+import package::layout::features::{has_irradiance_cache, notes_sightings, paper_refraction, PAPER_NONE};
 import package::layout::path_pass::{path_params, LAYER_DIRECT, LAYER_INDIRECT};
 import package::layout::scene::{MATERIAL_DIELECTRIC, MATERIAL_MIRROR};
+import package::path::irradiance_cache::begin_tail;
 import package::path::state::{layer_at_receiver, pass_caster, Path, SLOT_MICROFACET, SLOT_VERTEX};
 import package::path::vertex::Vertex;
 import package::sampling::sobol::{padded_1, padded_2};
-import package::sampling::warp::cosine_hemisphere;
+import package::sampling::warp::{cosine_hemisphere, PI};
 import package::spectrum::wavelength::at_wavelength;
 
 /// Receivers that a path meets before roulette may end it.
@@ -37,8 +39,15 @@ fn go_on_specular(path: ptr<function, Path>, vertex: Vertex, u: f32, choice: u32
     (*path).goes_on = any((*path).beta != vec3<f32>(0.0));
 }
 
-/// Sends the path on from the base, in proportion to the cosine.
-fn go_on_diffuse(path: ptr<function, Path>, vertex: Vertex) {
+/// Sends the path on from the base, in proportion to the cosine, or ends it where what bounced light brings is known.
+fn go_on_diffuse(path: ptr<function, Path>, vertex: Vertex, cached: vec4<f32>) {
+    let by_base = (*path).beta * at_wavelength(vertex.material.base * (1.0 - vertex.gloss), (*path).wavelength) / (1.0 - vertex.specular_chance);
+    if has_irradiance_cache && cached.w > 0.0 {
+        let brought = by_base / PI * at_wavelength(cached.xyz, (*path).wavelength);
+        (*path).radiance += brought;
+        add_to_layer((*path).pixel, LAYER_INDIRECT, brought);
+        return;
+    }
     let slot = SLOT_VERTEX + 8u * ((*path).gathered - 1u);
     let point = vertex.point;
     let u = padded_2((*path).sample, (*path).seed, slot + 3u);
@@ -50,7 +59,11 @@ fn go_on_diffuse(path: ptr<function, Path>, vertex: Vertex) {
     (*path).lights_counted = true;
     (*path).origin = leave(point, wi);
     (*path).direction = wi;
-    (*path).goes_on = dot(wi, point.n_g) > 0.0 && any((*path).beta != vec3<f32>(0.0));
+    (*path).goes_on = any((*path).beta != vec3<f32>(0.0));
+    if notes_sightings {
+        begin_tail(path, by_base, toward_wi);
+    }
+    (*path).goes_on = (*path).goes_on && dot(wi, point.n_g) > 0.0;
 }
 
 /// Ends the path by chance in proportion to what it can still bring.
@@ -65,8 +78,8 @@ fn play_roulette(path: ptr<function, Path>) {
     }
 }
 
-/// Sends a path on from a vertex through one of its lobes, or lets it end.
-fn go_on(path: ptr<function, Path>, vertex: Vertex) {
+/// Sends a path on from a vertex through one of its lobes, or lets it end; `cached` is the irradiance there by bounced light, if it is known.
+fn go_on(path: ptr<function, Path>, vertex: Vertex, cached: vec4<f32>) {
     (*path).goes_on = false;
     if !vertex.is_caster && !vertex.is_receiver {
         return;
@@ -81,7 +94,7 @@ fn go_on(path: ptr<function, Path>, vertex: Vertex) {
     if takes_specular {
         go_on_specular(path, vertex, u, vertex.choice);
     } else {
-        go_on_diffuse(path, vertex);
+        go_on_diffuse(path, vertex, cached);
     }
     if takes_specular && vertex.is_caster {
         pass_caster(path);

@@ -2,9 +2,12 @@
 
 import package::film::layers::{add_to_group, add_to_layer};
 import package::layout::path_pass::{path_params, Sighting, LAYER_EMISSION, LAYER_INDIRECT};
+import package::layout::scene::NONE;
 import package::medium::media::medium_ior;
 import package::spectrum::wavelength::{at_wavelength, draw_wavelength, Wavelength};
 
+/// Slot of the padded number of a tail's wavelength.
+const SLOT_TAIL: u32 = 3072u;
 /// First slot of the padded numbers for microfacet normals; choices have those below.
 const SLOT_MICROFACET: u32 = 4096u;
 /// First slot of the padded numbers of vertices that gather light, eight each.
@@ -61,6 +64,19 @@ struct Path {
     sample: u32,
     /// What it has seen of the energy maps, but for the radiance.
     sighting: Sighting,
+    /// Whether its next ray is the first of its tail, which measures light that bounces to its first receiver: irradiance_cache.wgsl.
+    tail_begins: bool,
+    /// Radiance in the picture for radiance 1 along the tail.
+    tail_factor: vec3<f32>,
+    /// The share of what comes along the tail that its first receiver lets in.
+    tail_beta: vec3<f32>,
+    /// Radiance gathered before, W/(m² sr).
+    before_tail: vec3<f32>,
+}
+
+/// A path that has seen nothing of the maps.
+fn no_sighting() -> Sighting {
+    return Sighting(NONE, 0.0, 0.0, NONE, 0.0, 0.0, 0.0, 0.0, vec3<f32>(0.0), -1.0);
 }
 
 /// Gives a path one wavelength.

@@ -369,6 +369,17 @@ shared_structs! {
         /// The inverse cumulative distribution of the pixel filter at (1 − cos(πk/63))/2 for k = 0 … 63, pixels from the centre.
         filter_inverse_cdf: [[f32; 4]; 16],
     }
+    /// One dispatch of the pass that looks at what the maps hold.
+    struct ProbeParams {
+        /// Places to look at.
+        count: u32,
+        /// Entries of irradiance of each texel, of which the first is of all light.
+        entries: u32,
+        /// Unused.
+        padding_0: u32,
+        /// Unused.
+        padding_1: u32,
+    }
     /// One dispatch of the pass that estimates errors.
     struct ErrorParams {
         /// Width of the picture, pixels.
@@ -439,6 +450,11 @@ shared_structs! {
         weight: f32,
         /// Radiance that the path gathered, W/(m² sr), mean of the channels.
         radiance: f32,
+        /// Radiance that came to the first place by the path's next direction, W/(m² sr), but for what next-event estimation and the maps bring
+        /// there. Directions are drawn in proportion to the cosine, so that its mean times π is irradiance.
+        bounced: [f32; 3],
+        /// One over the distance to what was met there, 1/m; 0 for nothing, negative if the path did not go on from its first place.
+        inverse_distance: f32,
     }
     /// Sums over a pixel's samples of what they met first, and their deviations.
     struct DataLayers {

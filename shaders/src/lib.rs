@@ -8,10 +8,10 @@ mod layout;
 pub use layout::{
     AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing,
     Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTexel, MapTile, MapTileRecord, MapWeld, MapWeldPart, Material,
-    MaterialTextures, NONE, PathParams, PhotonParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams,
-    SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SmoothParams, SurfaceTexture,
-    TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger, light_kind,
-    light_layer, map_tile, material_kind, paper_refraction, texture_flag, triangle_flag,
+    MaterialTextures, NONE, PathParams, PhotonParams, ProbeParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS,
+    ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SmoothParams,
+    SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger,
+    light_kind, light_layer, map_tile, material_kind, paper_refraction, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.
@@ -45,6 +45,8 @@ pub const BAKE: Kernel = kernel!("bake", Some("sample_texels"));
 pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
 /// After it: noise is smoothed.
 pub const SMOOTH: Kernel = kernel!("smooth", Some("smooth_maps"));
+/// Looks up what the energy maps hold where camera paths met them.
+pub const PROBE: Kernel = kernel!("probe", Some("look_up_sightings"));
 /// Estimates the error of each tile of the picture.
 pub const ERRORS: Kernel = kernel!("errors", Some("estimate_errors"));
 /// Shows the film on a texture: `cover_target` and `show_pixel`.
@@ -55,7 +57,8 @@ pub const INTERSECT: Kernel = kernel!("intersect", Some("intersect_rays"));
 pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
 
 /// Every kernel.
-pub const KERNELS: [Kernel; 9] = [PHOTONS, CAMERA, BAKE, RESOLVE, SMOOTH, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
+pub const KERNELS: [Kernel; 10] =
+    [PHOTONS, CAMERA, BAKE, RESOLVE, SMOOTH, PROBE, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
 
 /// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
 pub const WORKGROUP_SIZE: u32 = 64;

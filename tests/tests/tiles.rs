@@ -150,7 +150,10 @@ fn even_light_is_even_over_tiles_of_every_size() {
         // The photons are more even than random ones.
         println!("{footprints}: {inside_deviation} inside, {border_deviation} on borders");
         assert!(inside_deviation < 0.25, "{footprints}: {inside_deviation} inside");
-        assert!(border_deviation < 1.1 * inside_deviation, "{footprints}: {border_deviation} on borders, {inside_deviation} inside");
+        assert!(
+            border_deviation < 1.1 * inside_deviation,
+            "{footprints}: {border_deviation} on borders, {inside_deviation} inside"
+        );
         assert_no_jumps(&map);
     }
 }

@@ -1,6 +1,7 @@
 //! A scene on a device: what every command that sends photons begins with.
 
 mod chunks;
+mod opening;
 mod warnings;
 
 use std::{
@@ -14,8 +15,10 @@ use diacaustic::{
 };
 use diacaustic_headless::Gpu;
 
+pub(crate) use self::opening::Opening;
 use self::{
     chunks::{first_photons, in_chunks, photon_deadline, rounded_photons},
+    opening::Opened,
     warnings::about_photons,
 };
 use crate::{
@@ -83,23 +86,22 @@ pub(crate) trait Attendant {
 }
 
 impl Session {
-    /// Opens the device and sets the scene on it, which took `load` to read.
+    /// Sets a scene, which took `load` to read, on a device that was opened meanwhile.
     ///
     /// # Errors
     /// If there is no device, or the scene cannot be rendered on it.
-    pub fn open(arguments: &SessionArguments, loaded: LoadedScene, load: Duration) -> Result<Self, Error> {
+    pub fn open(
+        arguments: &SessionArguments,
+        opening: Opening,
+        loaded: LoadedScene,
+        load: Duration,
+    ) -> Result<Self, Error> {
         let progress = Progress::new(arguments.quiet);
         let LoadedScene { scene, warnings } = loaded;
-        let mut times = Times { load, ..Times::default() };
         let interruption = Interruption::watch().map_err(Error::Signals)?;
-        let start = Instant::now();
-        let gpu = progress.spin("device", || arguments.device.open())?;
-        times.device = start.elapsed();
-        let start = Instant::now();
-        let options = arguments.device.renderer_options();
-        let mut renderer = progress.spin("kernels", || Renderer::new(&gpu.device, &gpu.queue, &options))?;
-        times.kernels = start.elapsed();
-        let opened = Seconds(times.device + times.kernels);
+        let Opened { gpu, mut renderer, device, kernels } = progress.spin("device", || opening.finish())?;
+        let mut times = Times { load, device, kernels, ..Times::default() };
+        let opened = Seconds(device + kernels);
         progress.say(format_args!(
             "device: {} ({}) in {opened}",
             gpu.adapter_info.name,

@@ -16,9 +16,10 @@ use diacaustic_surface::MapLayout;
 use self::{lightmap::spread_outwards, table::Table};
 use crate::{
     EnergyMap, Error,
-    camera_pass::{PATH_OUTPUTS, outputs_group},
+    camera_pass::{Outputs as PathOutputs, PATH_OUTPUTS},
     features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose},
+    irradiance_cache::IrradianceCache,
     layers::{LayerSums, kept_groups},
     map_sums::EnergyMaps,
     random::combine,
@@ -184,8 +185,10 @@ impl Outputs {
     fn new(gpu: &Gpu, pass: &BakePass, of: &BakeScene<'_>, texels: u64) -> Result<Self, Error> {
         let film = gpu.zeroed(FILM, 16 * (1 + texels))?;
         let layers = LayerSums::new(gpu, &[Layer::Direct], &kept_groups(of.scene), texels)?;
-        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        let group = outputs_group(gpu, &pass.outputs_layout, of.maps, &film, &layers, &no_sightings);
+        let sightings = &gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        let cache = &IrradianceCache::none(gpu)?.buffer;
+        let outputs = PathOutputs { maps: of.maps, film: &film, layers: &layers, sightings, cache };
+        let group = gpu.bind_resources(&pass.outputs_layout, outputs.resources());
         Ok(Self { film, layers, group })
     }
 

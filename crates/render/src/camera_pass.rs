@@ -1,8 +1,7 @@
 //! Phase 2: samples of the picture.
 
-use diacaustic_scene::{LightGroups, RenderSettings, Scene};
+use diacaustic_scene::Scene;
 use diacaustic_shaders::{CAMERA, CameraParams, PathParams, Sighting, TILE_SIZE};
-use glam::Vec3;
 
 use crate::{
     Error, Film, LayerImage,
@@ -10,39 +9,29 @@ use crate::{
     film::filter_inverse_cdf,
     fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
+    irradiance_cache::IrradianceCache,
     layers::LayerSums,
     lights::{Lights, media_keys, medium_index},
     map_sums::EnergyMaps,
     random::combine,
+    sightings::SIGHTINGS,
 };
 
 /// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
 const PARAMS: [Binding; 3] = [Binding::Uniform, Binding::Uniform, Binding::Records];
-pub(crate) const PATH_OUTPUTS: [Binding; 6] = [
+pub(crate) const PATH_OUTPUTS: [Binding; 7] = [
     Binding::Texels,
     Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
     Binding::ReadWrite,
+    Binding::Read,
 ];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
 const HALVES: Purpose =
     Purpose { what: "the first samples of the picture's pixels", remedy: "lower width or height, or state samples" };
 const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
-const SIGHTINGS: Purpose =
-    Purpose { what: "what the camera sees of the energy maps", remedy: "set guiding = false and map_size" };
-/// Paths along each side of the picture that note what they see, multiples of [`TILE_SIZE`]: at least, at most.
-const SIGHTINGS_SIDES: std::ops::RangeInclusive<u32> = 128..=512;
-/// Pixels along each axis for each of them.
-const PIXELS_PER_SIGHTING: u32 = 4;
-/// The stream of these paths' seeds.
-const SIGHTINGS_SEED_STREAM: u32 = 4;
-/// Paths along each side of the picture, and samples of each, that tell how much the light in the maps changes.
-const PROBE_SIDE: u32 = 128;
-const PROBE_SAMPLES: u32 = 4;
-/// The stream of these paths' seeds.
-const PROBE_SEED_STREAM: u32 = 6;
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
 
@@ -51,7 +40,7 @@ const SEED_STREAM: u32 = 2;
 pub(crate) struct CameraPass {
     params_layout: wgpu::BindGroupLayout,
     outputs_layout: wgpu::BindGroupLayout,
-    pipelines: Pipelines,
+    pub pipelines: Pipelines,
 }
 
 impl CameraPass {
@@ -63,19 +52,30 @@ impl CameraPass {
         Self { params_layout, outputs_layout, pipelines }
     }
 
-    /// Binds what camera paths read of the maps and accumulate in.
-    fn outputs_group(
-        &self,
-        gpu: &Gpu,
-        maps: &EnergyMaps,
-        film: &wgpu::Buffer,
-        layers: &LayerSums,
-        sightings: &wgpu::Buffer,
-        halves: &wgpu::Buffer,
-    ) -> wgpu::BindGroup {
-        let mut resources = path_outputs(maps, film, layers, sightings);
+    /// Binds what camera paths read and accumulate in.
+    pub fn outputs_group(&self, gpu: &Gpu, outputs: &Outputs<'_>, halves: &wgpu::Buffer) -> wgpu::BindGroup {
+        let mut resources = outputs.resources();
         resources.push(halves.as_entire_binding());
         gpu.bind_resources(&self.outputs_layout, resources)
+    }
+}
+
+/// What paths read of the scene's light, and what they accumulate in.
+pub(crate) struct Outputs<'o> {
+    pub maps: &'o EnergyMaps,
+    pub film: &'o wgpu::Buffer,
+    pub layers: &'o LayerSums,
+    pub sightings: &'o wgpu::Buffer,
+    pub cache: &'o wgpu::Buffer,
+}
+
+impl<'o> Outputs<'o> {
+    /// The resources of [`PATH_OUTPUTS`].
+    pub fn resources(&self) -> Vec<wgpu::BindingResource<'o>> {
+        let irradiance = wgpu::BindingResource::TextureView(&self.maps.irradiance);
+        let LayerSums { light, data, groups, .. } = self.layers;
+        let buffers = [self.film, self.sightings, light, data, groups, self.cache];
+        [irradiance].into_iter().chain(buffers.map(|buffer| buffer.as_entire_binding())).collect()
     }
 }
 
@@ -83,7 +83,7 @@ impl CameraPass {
 #[derive(Debug)]
 pub(crate) struct Samples {
     pipeline: wgpu::ComputePipeline,
-    camera: CameraParams,
+    pub camera: CameraParams,
     /// The params of all paths.
     pub paths: PathParams,
     camera_params: wgpu::Buffer,
@@ -96,14 +96,6 @@ pub(crate) struct Samples {
     params_group: wgpu::BindGroup,
     /// None until there are maps.
     outputs_group: Option<wgpu::BindGroup>,
-}
-
-/// What camera paths see of the energy maps.
-#[derive(Debug, Default)]
-pub(crate) struct Sightings {
-    pub list: Vec<Sighting>,
-    /// Pixels for each.
-    pub pixels: f64,
 }
 
 impl Samples {
@@ -134,85 +126,28 @@ impl Samples {
         })
     }
 
-    /// Lets samples read these maps from now on.
-    pub fn show(&mut self, gpu: &Gpu, pass: &CameraPass, maps: &EnergyMaps) -> Result<(), Error> {
-        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        self.outputs_group = Some(pass.outputs_group(gpu, maps, &self.film, &self.layers, &no_sightings, &self.halves));
+    /// Lets samples read these maps and this cache from now on.
+    pub fn show(
+        &mut self,
+        gpu: &Gpu,
+        pass: &CameraPass,
+        maps: &EnergyMaps,
+        cache: &IrradianceCache,
+    ) -> Result<(), Error> {
+        let sightings = &gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
+        let outputs = Outputs { maps, film: &self.film, layers: &self.layers, sightings, cache: &cache.buffer };
+        self.outputs_group = Some(pass.outputs_group(gpu, &outputs, &self.halves));
         Ok(())
     }
 
-    /// What camera paths spread over the picture see of the energy maps, which are `empty` yet. Blocks.
-    pub fn sightings(
-        &self,
-        gpu: &Gpu,
-        pass: &mut CameraPass,
-        features: Features,
-        scene_group: &wgpu::BindGroup,
-        settings: &RenderSettings,
-        empty: &EnergyMaps,
-    ) -> Result<Sightings, Error> {
-        let [width, height] = [settings.width, settings.height].map(|pixels| {
-            let side = pixels.div_ceil(PIXELS_PER_SIGHTING).next_multiple_of(TILE_SIZE);
-            side.clamp(*SIGHTINGS_SIDES.start(), *SIGHTINGS_SIDES.end())
-        });
-        let camera = CameraParams { width, height, ..self.camera };
-        let seen_paths = PathParams {
-            max_bounces: settings.max_bounces.min(1),
-            seed: combine(settings.seed, SIGHTINGS_SEED_STREAM),
-            ..self.paths
-        };
-        let paths = u64::from(width * height);
-        let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
-        let sightings = gpu.zeroed(SIGHTINGS, paths * size_of::<Sighting>() as u64)?;
-        let no_layers = LayerSums::new(gpu, &[], &LightGroups::default(), paths)?;
-        let no_halves = gpu.zeroed(HALVES, 0)?;
-        let outputs = pass.outputs_group(gpu, empty, &film, &no_layers, &sightings, &no_halves);
-        let pipeline = pass.pipelines.get(gpu, features.with_sightings());
-        self.write_params(gpu, &camera, &seen_paths);
-        let groups = [width, height].map(|side| side / TILE_SIZE);
-        gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], groups);
-        let pixels = f64::from(settings.width) * f64::from(settings.height) / paths as f64;
-        Ok(Sightings { list: gpu.read(&sightings, 0..paths)?, pixels })
+    /// A film for so many paths.
+    pub fn blank_film(&self, gpu: &Gpu, paths: u64) -> Result<wgpu::Buffer, Error> {
+        gpu.zeroed(FILM, 16 * (1 + paths))
     }
 
-    /// A few samples of a small picture, by the maps as they are: always the same paths, so that two probes differ by what has changed in
-    /// the maps. Blocks.
-    pub fn probe(
-        &self,
-        gpu: &Gpu,
-        pass: &mut CameraPass,
-        features: Features,
-        scene_group: &wgpu::BindGroup,
-        scene: &ProbedScene,
-    ) -> Result<Probe, Error> {
-        let camera = CameraParams { width: PROBE_SIDE, height: PROBE_SIDE, ..self.camera };
-        let probing = PathParams { seed: combine(scene.seed, PROBE_SEED_STREAM), ..self.paths };
-        let paths = u64::from(PROBE_SIDE * PROBE_SIDE);
-        let film = gpu.zeroed(FILM, 16 * (1 + paths))?;
-        let halves = gpu.zeroed(HALVES, 16 * paths)?;
-        let no_sightings = gpu.zeroed(SIGHTINGS, size_of::<Sighting>() as u64)?;
-        let layers = LayerSums::new(gpu, &[], scene.groups, paths)?;
-        let outputs = pass.outputs_group(gpu, scene.maps, &film, &layers, &no_sightings, &halves);
-        let pipeline = pass.pipelines.get(gpu, features.for_probe());
-        self.write_params(gpu, &camera, &probing);
-        let tiles = PROBE_SIDE / TILE_SIZE;
-        for _ in 0..PROBE_SAMPLES {
-            gpu.dispatch(&pipeline, &[scene_group, &self.params_group, &outputs], [tiles, tiles]);
-        }
-        let sums: Vec<[f32; 4]> = gpu.read(&film, 1..1 + paths)?;
-        let halves: Vec<[f32; 4]> = gpu.read(&halves, 0..paths)?;
-        let mean = |sums: &[f32; 4]| Vec3::from_slice(sums) / sums[3].max(1.0);
-        let other = |(all, half): (&[f32; 4], &[f32; 4])| mean(&std::array::from_fn(|k| all[k] - half[k]));
-        let scale = f64::from(self.camera.width) * f64::from(self.camera.height) / paths as f64;
-        Ok(Probe {
-            radiance: sums.iter().map(mean).collect(),
-            deviation: halves
-                .iter()
-                .zip(sums.iter().zip(&halves).map(other))
-                .map(|(h, o)| 0.5 * (mean(h) - o))
-                .collect(),
-            rays: ray_count(gpu, &film)? as f64 * scale,
-        })
+    /// In place of halves that are not kept.
+    pub fn no_halves(&self, gpu: &Gpu) -> Result<wgpu::Buffer, Error> {
+        gpu.zeroed(HALVES, 0)
     }
 
     /// What samples accumulate in, by name.
@@ -277,10 +212,11 @@ impl Samples {
         [self.camera.width, self.camera.height]
     }
 
-    /// Sets the params of the dispatches that follow.
-    fn write_params(&self, gpu: &Gpu, camera: &CameraParams, paths: &PathParams) {
+    /// Sets the params of the dispatches that follow, and returns their bind group.
+    pub fn write_params(&self, gpu: &Gpu, camera: &CameraParams, paths: &PathParams) -> &wgpu::BindGroup {
         gpu.queue.write_buffer(&self.camera_params, 0, bytemuck::bytes_of(camera));
         gpu.queue.write_buffer(&self.path_params, 0, bytemuck::bytes_of(paths));
+        &self.params_group
     }
 
     /// Reads the picture. Blocks.
@@ -309,24 +245,6 @@ impl Samples {
     }
 }
 
-/// What the samples of a probe see by.
-pub(crate) struct ProbedScene<'s> {
-    pub seed: u32,
-    pub maps: &'s EnergyMaps,
-    pub groups: &'s LightGroups,
-}
-
-/// A few samples of a small picture.
-#[derive(Clone, Debug)]
-pub(crate) struct Probe {
-    /// Mean radiance of each pixel, W/(m² sr).
-    pub radiance: Vec<Vec3>,
-    /// By which, as a standard deviation, each may differ from what more samples would give.
-    pub deviation: Vec<Vec3>,
-    /// Rays that as many samples of the whole picture take.
-    pub rays: f64,
-}
-
 /// Reads the number of rays traced for a film. Blocks.
 fn ray_count(gpu: &Gpu, film: &wgpu::Buffer) -> Result<u64, Error> {
     let words: Vec<u32> = gpu.read(film, 0..4)?;
@@ -351,30 +269,6 @@ fn params_group(
     let mut resources: Vec<_> = params.map(|buffer| buffer.as_entire_binding()).into();
     resources.push(wgpu::BindingResource::TextureView(&view));
     Ok(gpu.bind_resources(&pass.params_layout, resources))
-}
-
-/// Binds what paths read of the maps and accumulate in.
-pub(crate) fn outputs_group(
-    gpu: &Gpu,
-    layout: &wgpu::BindGroupLayout,
-    maps: &EnergyMaps,
-    film: &wgpu::Buffer,
-    layers: &LayerSums,
-    sightings: &wgpu::Buffer,
-) -> wgpu::BindGroup {
-    gpu.bind_resources(layout, path_outputs(maps, film, layers, sightings))
-}
-
-fn path_outputs<'o>(
-    maps: &'o EnergyMaps,
-    film: &'o wgpu::Buffer,
-    layers: &'o LayerSums,
-    sightings: &'o wgpu::Buffer,
-) -> Vec<wgpu::BindingResource<'o>> {
-    let irradiance = wgpu::BindingResource::TextureView(&maps.irradiance);
-    let buffers =
-        [film, sightings, &layers.light, &layers.data, &layers.groups].map(|buffer| buffer.as_entire_binding());
-    [irradiance].into_iter().chain(buffers).collect()
 }
 
 fn paths_of(scene: &Scene, lights: &Lights) -> PathParams {

@@ -1,14 +1,16 @@
 //! What a scene makes use of: kernels are compiled without the rest (`shaders/layout/features.wgsl`).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use diacaustic_scene::{Material, MaterialKind, PaperRefraction, RenderSettings, SMOOTH, Scene};
 use diacaustic_shaders::{Kernel, light_kind, paper_refraction};
+use rayon::prelude::*;
 
 use crate::{
+    Error,
     gpu::Gpu,
-    layers::{has_data_layers, has_light_layers, kept_group_count},
-    lights::Lights,
+    layers::{has_data_layers, has_light_layers, kept_group_count, kept_groups},
+    lights::kinds_of_light,
 };
 
 /// What a kernel must be able to do.
@@ -46,6 +48,8 @@ pub(crate) struct Features {
     paper_refraction: u32,
     /// Whether camera paths note which texels they see.
     sightings: bool,
+    /// Whether an irradiance cache is kept.
+    irradiance_cache: bool,
     /// Light kept apart by how it came.
     light_layers: bool,
     /// What pixels show, and how much their samples vary.
@@ -57,9 +61,10 @@ pub(crate) struct Features {
 }
 
 impl Features {
-    pub fn of(scene: &Scene, lights: &Lights) -> Self {
+    pub fn of(scene: &Scene) -> Self {
         let kinds = || scene.materials.iter().map(|material| &material.kind);
-        let shines = |wanted: &[u32]| lights.emitters.iter().any(|emitter| wanted.contains(&emitter.kind()));
+        let shining = kinds_of_light(scene);
+        let shines = |wanted: &[u32]| shining.iter().any(|kind| wanted.contains(kind));
         Self {
             gloss: scene.materials.iter().any(has_gloss),
             conductors: kinds().any(|kind| matches!(kind, MaterialKind::Conductor { .. })),
@@ -77,9 +82,10 @@ impl Features {
             squares: false,
             paper_refraction: paper_constant(&scene.settings),
             sightings: false,
+            irradiance_cache: scene.keeps_irradiance_cache(),
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
-            light_groups: kept_group_count(&lights.groups) as u32,
+            light_groups: kept_group_count(&kept_groups(scene)) as u32,
             halves: scene.settings.samples.is_none(),
         }
     }
@@ -87,6 +93,11 @@ impl Features {
     /// Whether the sum of the first half of the samples is kept.
     pub fn has_halves(self) -> bool {
         self.halves
+    }
+
+    /// Whether an irradiance cache is kept.
+    pub fn has_irradiance_cache(self) -> bool {
+        self.irradiance_cache
     }
 
     /// What the photons of one kind of light need: what other lights need does not count.
@@ -99,12 +110,8 @@ impl Features {
 
     /// The same for camera paths that note what they see of the energy maps.
     pub fn with_sightings(self) -> Self {
-        Self { sightings: true, light_layers: false, data_layers: false, light_groups: 0, halves: false, ..self }
-    }
-
-    /// The same for camera paths that probe what has changed.
-    pub fn for_probe(self) -> Self {
-        Self { light_layers: false, data_layers: false, halves: true, ..self }
+        let sightings = Self { sightings: true, irradiance_cache: false, halves: false, ..self };
+        Self { light_layers: false, data_layers: false, light_groups: 0, ..sightings }
     }
 
     /// What the filter of energy maps needs.
@@ -114,7 +121,7 @@ impl Features {
 
     /// The same for paths that begin at a lightmap's texels.
     pub fn for_baking(self) -> Self {
-        Self { sightings: false, light_layers: true, data_layers: false, ..self }
+        Self { sightings: false, irradiance_cache: false, light_layers: true, data_layers: false, ..self }
     }
 
     /// The values of the kernel's override constants.
@@ -136,6 +143,7 @@ impl Features {
             ("has_squares", f64::from(self.squares)),
             ("paper_refraction", f64::from(self.paper_refraction)),
             ("notes_sightings", f64::from(self.sightings)),
+            ("has_irradiance_cache", f64::from(self.irradiance_cache)),
             ("has_light_layers", f64::from(self.light_layers)),
             ("has_data_layers", f64::from(self.data_layers)),
             ("light_group_count", f64::from(self.light_groups)),
@@ -175,6 +183,21 @@ pub(crate) struct Pipelines {
 impl Pipelines {
     pub fn new(kernel: Kernel, layouts: &[&wgpu::BindGroupLayout]) -> Self {
         Self { kernel, layouts: layouts.iter().copied().cloned().collect(), made: HashMap::new() }
+    }
+
+    /// Compiles the pipelines for some sets of features, several at a time, to be there when they are asked for.
+    pub fn prepare(&mut self, gpu: &Gpu, features: &[Features]) -> Result<(), Error> {
+        let layouts: Vec<_> = self.layouts.iter().collect();
+        let missing: HashSet<_> = features.iter().filter(|features| !self.made.contains_key(features)).collect();
+        let make = |features: &Features| {
+            let constants = features.constants(self.kernel);
+            // The device's error scopes are each thread's own.
+            let pipeline = gpu.guarded(|| Ok(gpu.specialised_pipeline(self.kernel, &layouts, &constants)))?;
+            Ok((*features, pipeline))
+        };
+        let made: Vec<_> = missing.into_par_iter().map(make).collect::<Result<_, Error>>()?;
+        self.made.extend(made);
+        Ok(())
     }
 
     /// The pipeline for a set of features, compiled if it is the first to ask.

@@ -60,7 +60,7 @@ impl HostScene {
             maps,
             casters: caster_bounds(scene, &triangles[..of_objects]),
             around,
-            features: Features::of(scene, &lights),
+            features: Features::of(scene),
             lights,
             bvh,
             bvh_time,

@@ -256,6 +256,16 @@ pub(crate) fn emissive_materials(scene: &Scene) -> Vec<(usize, String)> {
         .collect()
 }
 
+/// The kinds of light that a scene may have, each once: [`light_kind`].
+pub(crate) fn kinds_of_light(scene: &Scene) -> Vec<u32> {
+    let shining = scene.lights.iter().filter(|light| !light.kind.is_dark());
+    let mut kinds: Vec<u32> = shining.map(|light| kind_of(&light.kind)).collect();
+    kinds.extend(emissive_materials(scene).iter().map(|_| light_kind::SURFACE));
+    kinds.sort_unstable();
+    kinds.dedup();
+    kinds
+}
+
 fn emissive_surface(number: usize, group: usize, strength: Vec3) -> Emitter {
     Emitter {
         number,
@@ -304,18 +314,25 @@ fn measure(emitter: &mut Emitter, kind: &LightKind, around: &BoundingSphere) {
     }
 }
 
+/// One of [`light_kind`].
+fn kind_of(kind: &LightKind) -> u32 {
+    match kind {
+        LightKind::Sphere { .. } => light_kind::SPHERE,
+        LightKind::Rectangle { .. } | LightKind::Disk { .. } => light_kind::SURFACE,
+        LightKind::Point { .. } => light_kind::POINT,
+        LightKind::Spot { .. } => light_kind::SPOT,
+        LightKind::Distant { .. } => light_kind::DISTANT,
+        LightKind::Environment { .. } => light_kind::ENVIRONMENT,
+    }
+}
+
 fn record(kind: &LightKind) -> shaders::Light {
-    let blank = shaders::Light { strength: kind.strength().into(), ..Default::default() };
+    let blank = shaders::Light { kind: kind_of(kind), strength: kind.strength().into(), ..Default::default() };
     match *kind {
-        LightKind::Sphere { center, radius, .. } => {
-            shaders::Light { kind: light_kind::SPHERE, position: center.into(), extent: radius, ..blank }
-        }
-        LightKind::Rectangle { .. } | LightKind::Disk { .. } => shaders::Light { kind: light_kind::SURFACE, ..blank },
-        LightKind::Point { position, .. } => {
-            shaders::Light { kind: light_kind::POINT, position: position.into(), ..blank }
-        }
+        LightKind::Sphere { center, radius, .. } => shaders::Light { position: center.into(), extent: radius, ..blank },
+        LightKind::Rectangle { .. } | LightKind::Disk { .. } => blank,
+        LightKind::Point { position, .. } => shaders::Light { position: position.into(), ..blank },
         LightKind::Spot { position, direction, inner_angle, outer_angle, .. } => shaders::Light {
-            kind: light_kind::SPOT,
             position: position.into(),
             axis: direction.normalize().into(),
             cos_inner: inner_angle.to_radians().cos(),
@@ -323,15 +340,13 @@ fn record(kind: &LightKind) -> shaders::Light {
             ..blank
         },
         LightKind::Distant { direction, angular_radius, .. } => shaders::Light {
-            kind: light_kind::DISTANT,
             position: (-direction.normalize()).into(),
             extent: 2.0 * (0.5 * angular_radius.to_radians()).sin().powi(2),
             ..blank
         },
         LightKind::Environment { ref map, rotate, .. } => {
             let (sin, cos) = rotate.to_radians().sin_cos();
-            let turn = [cos, sin, 0.0];
-            shaders::Light { kind: light_kind::ENVIRONMENT, axis: turn, first: map.width, count: map.height, ..blank }
+            shaders::Light { axis: [cos, sin, 0.0], first: map.width, count: map.height, ..blank }
         }
     }
 }

@@ -60,7 +60,7 @@ pub(crate) fn plan_maps(scene: &Scene, triangles: &[WorldTriangle]) -> Vec<Optio
 
 /// A texel half as wide as the camera's pixels are on the object, on average over directions, where it is nearest to the point looked at;
 /// metres.
-fn default_texel_width(camera: &Camera, settings: &RenderSettings, object: &Object) -> f32 {
+pub(crate) fn default_texel_width(camera: &Camera, settings: &RenderSettings, object: &Object) -> f32 {
     let (low, high) = object
         .mesh
         .positions

@@ -283,6 +283,11 @@ impl EnergyMaps {
         self.texel_count.next_multiple_of(GROUP_ALIGNMENT)
     }
 
+    /// Entries of irradiance of a texel, of which the first is of all light.
+    pub fn irradiance_entries(&self) -> u64 {
+        self.format.entries()
+    }
+
     /// Bytes of the sums of all light groups.
     pub fn sums_bytes(&self) -> u64 {
         self.format.groups * self.texel_count * self.format.bytes()

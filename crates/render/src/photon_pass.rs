@@ -51,7 +51,7 @@ const PILOT_ROUND: std::ops::RangeInclusive<u32> = 10..=13;
 pub(crate) struct PhotonPass {
     params_layout: wgpu::BindGroupLayout,
     outputs_layout: wgpu::BindGroupLayout,
-    pipelines: Pipelines,
+    pub pipelines: Pipelines,
 }
 
 impl PhotonPass {

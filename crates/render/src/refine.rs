@@ -5,29 +5,30 @@
 
 mod saved;
 
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 
 use diacaustic_scene::RenderSettings;
+use diacaustic_shaders::Sighting;
 use glam::Vec3;
 
-use crate::{camera_pass::Probe, error_pass::TileErrors};
+use crate::error_pass::TileErrors;
 
 /// Photons after which the maps are looked at first, as a power of two.
 const FIRST_LOOK: u32 = 14;
 /// The most photons of the renderer's own choice, as a power of two.
 const MOST_PHOTONS: u32 = 24;
-/// Photons between two chances to stop, as a power of two.
+/// Photons until the first chance to stop, or to show a picture, and between any others, as powers of two.
+const PHOTONS_AT_FIRST: u32 = 16;
 const PHOTONS_AT_ONCE: u32 = 18;
-/// The part of the squared target error that the maps may make up, whatever the rays say.
-const MAP_SHARES: RangeInclusive<f64> = 0.1..=0.5;
-/// The part of a probe's rays that samples placed by need take for the same error.
-const PLACED_RAYS: f64 = 0.25;
+/// The part of the squared target error that the maps may make up, and where the scene states its samples.
+const MAP_SHARE: f64 = 0.25;
+const MOST_MAP_SHARE: f64 = 0.5;
 /// Share of the mean radiance, squared, that is added to a pixel's own: that of `shaders/errors.wgsl`.
 const DARKNESS: f32 = 0.01;
-/// The part of a pixel's radiance that the maps must bring for the pixel to tell how exact they are.
+/// The part of a path's light that the maps must bring for the path to tell how exact they are.
 const LEAST_MAP_LIGHT: f32 = 0.05;
 /// Samples of every pixel before errors are looked at.
-const FIRST_SAMPLES: u32 = 4;
+const FIRST_SAMPLES: u32 = 2;
 /// Samples at once, over all pixels: so many times the picture.
 const PICTURES_AT_ONCE: usize = 2;
 /// The most samples that a pixel takes of the renderer's own choice.
@@ -96,15 +97,15 @@ pub(crate) struct Course {
     /// Samples to take, if the scene says.
     samples: Option<u32>,
     emitted: u64,
-    /// Photons after which the maps are looked at next; 0 for a first look without any.
+    /// Photons after which the maps are looked at next.
     next_look: u64,
-    /// What a probe saw without photons.
-    unlit: Vec<Vec3>,
     /// The last look at photons: how many there were, and what it saw.
     last_look: Option<(u64, Vec<Vec3>)>,
     /// Squared errors of the picture that the maps and the camera's samples make.
     map_error: f64,
     camera_error: Option<f64>,
+    /// Photons by which the irradiance cache was filled last, and its squared error.
+    cache: Option<(u64, f64)>,
     /// Samples of every pixel.
     sampled: u32,
     /// Tiles that need more samples, and how many each before the next estimate.
@@ -123,11 +124,11 @@ impl Course {
             photons,
             samples: settings.samples,
             emitted: 0,
-            next_look: 0,
-            unlit: Vec::new(),
+            next_look: at_least(supply.turns, FIRST_LOOK),
             last_look: None,
             map_error: 0.0,
             camera_error: None,
+            cache: None,
             sampled: 0,
             listed: Vec::new(),
             tile_count: 0,
@@ -140,7 +141,7 @@ impl Course {
             stage: self.stage,
             photons: self.emitted,
             samples,
-            error: self.camera_error.map(|error| (error + self.map_error).sqrt()),
+            error: self.camera_error.map(|error| (error + self.light_error()).sqrt()),
         }
     }
 
@@ -160,6 +161,21 @@ impl Course {
         }
     }
 
+    /// Squared error by the maps and the irradiance cache, which all samples share.
+    fn light_error(&self) -> f64 {
+        self.map_error + self.cache.map_or(0.0, |(_, error)| error)
+    }
+
+    /// Photons by which the irradiance cache was filled; none if it was not.
+    pub fn cache_photons(&self) -> Option<u64> {
+        self.cache.map(|(photons, _)| photons)
+    }
+
+    /// Notes that the irradiance cache was filled by so many photons, with a squared error.
+    pub fn note_cache(&mut self, photons: u64, error: f64) {
+        self.cache = Some((photons, error));
+    }
+
     /// What is to be done next.
     pub fn next_step(&self) -> Step {
         match self.stage {
@@ -172,7 +188,8 @@ impl Course {
     fn next_photons(&self) -> Step {
         let end = self.photons.unwrap_or(self.next_look).min(self.supply.most);
         if self.emitted < end {
-            return Step::Emit(self.emitted..end.min(self.emitted + at_least(self.supply.turns, PHOTONS_AT_ONCE)));
+            let bits = if self.emitted == 0 { PHOTONS_AT_FIRST } else { PHOTONS_AT_ONCE };
+            return Step::Emit(self.emitted..end.min(self.emitted + at_least(self.supply.turns, bits)));
         }
         Step::Probe
     }
@@ -219,27 +236,22 @@ impl Course {
         self.listed.retain(|&(_, missing)| missing > 0);
     }
 
-    /// Learns from a probe how exact the maps are; `photon_rays` are all rays of photons so far.
-    pub fn note_probe(&mut self, probe: &Probe, photon_rays: u64) {
+    /// Learns from a probe how exact the maps are: what paths saw without photons, and the radiance that the maps bring to each by now.
+    pub fn note_probe(&mut self, sightings: &[Sighting], of_maps: Vec<Vec3>) {
         let now = self.emitted;
-        if now == 0 {
-            self.unlit.clone_from(&probe.radiance);
-            self.next_look = at_least(self.supply.turns, FIRST_LOOK);
-            return;
-        }
-        let last_look = self.last_look.replace((now, probe.radiance.clone()));
-        let Some((before, radiance)) = last_look else {
+        let look = Look { sightings, of_maps: &of_maps };
+        let Some((before, last)) = &self.last_look else {
             self.next_look = 2 * now;
+            self.last_look = Some((now, of_maps));
             return;
         };
-        let lit = lit_pixels(&self.unlit, &probe.radiance);
-        let change = |&pixel: &usize| radiance[pixel] - probe.radiance[pixel];
         // The picture of the first photons differs from that of all by what both lack: for twice as many, by as much as that of all does
         // from the truth.
-        let scale = before as f64 / (now - before) as f64;
-        self.map_error = scale * relative_error(&probe.radiance, &lit, change);
-        let camera_error = relative_error(&probe.radiance, &lit, |&pixel| probe.deviation[pixel]);
-        let allowed = self.target.powi(2) * self.map_share(photon_rays as f64, camera_error * PLACED_RAYS * probe.rays);
+        let scale = *before as f64 / (now - before) as f64;
+        self.map_error = scale * look.relative_change(last);
+        self.last_look = Some((now, of_maps));
+        let share = if self.samples.is_some() { MOST_MAP_SHARE } else { MAP_SHARE };
+        let allowed = share * self.target.powi(2);
         if self.map_error <= allowed || now >= at_least(self.supply.turns, MOST_PHOTONS) {
             self.stage = Stage::Samples;
             return;
@@ -248,21 +260,11 @@ impl Course {
         self.next_look = ((now as f64 * missing) as u64).next_multiple_of(self.supply.turns);
     }
 
-    /// The part of the squared target error that the maps may make up, such that all rays together are fewest: errors fall with the inverse of
-    /// rays, so each side's part goes with the root of its error times its rays. `camera_work` is that product of the camera's samples.
-    fn map_share(&self, photon_rays: f64, camera_work: f64) -> f64 {
-        if self.samples.is_some() {
-            return *MAP_SHARES.end();
-        }
-        let [by_photons, by_samples] = [self.map_error * photon_rays, camera_work].map(f64::sqrt);
-        (by_photons / (by_photons + by_samples).max(f64::MIN_POSITIVE)).clamp(*MAP_SHARES.start(), *MAP_SHARES.end())
-    }
-
     /// Learns from an estimate where samples are missing.
     pub fn note_errors(&mut self, errors: &TileErrors) {
         self.camera_error = Some(errors.mean(|tile| tile.squared_error));
         let target = self.target.powi(2);
-        let allowed = (target - self.map_error).max((1.0 - MAP_SHARES.end()) * target) as f32;
+        let allowed = (target - self.light_error()).max((1.0 - MOST_MAP_SHARE) * target) as f32;
         self.tile_count = errors.tiles.len();
         self.listed.clear();
         for (tile, (error, found)) in errors.guarded().into_iter().zip(&errors.tiles).enumerate() {
@@ -277,32 +279,42 @@ impl Course {
     }
 }
 
-/// Pixels whose light comes from the maps to a part that is worth looking at, by a picture without and one with photons.
-fn lit_pixels(unlit: &[Vec3], lit: &[Vec3]) -> Vec<usize> {
-    let is_lit = |&pixel: &usize| {
-        let (all, of_maps) = (lit[pixel].abs().element_sum(), (lit[pixel] - unlit[pixel]).abs().element_sum());
-        of_maps > LEAST_MAP_LIGHT * all
-    };
-    (0..lit.len().min(unlit.len())).filter(is_lit).collect()
+/// What paths see.
+struct Look<'l> {
+    sightings: &'l [Sighting],
+    /// The radiance that the maps bring to each, W/(m² sr).
+    of_maps: &'l [Vec3],
+}
+
+impl Look<'_> {
+    /// The brightness of what a path sees: the mean of the channels.
+    fn brightness(&self, path: usize) -> f32 {
+        self.sightings[path].radiance + self.of_maps[path].element_sum() / 3.0
+    }
+
+    /// The mean square of what the maps brought before and bring now, mean of the channels, relative to the brightness and at most 1 for each path; 0 without paths. Only
+    /// those count to which the maps bring a part that is worth looking at; what is dark beside these paths' mean counts as if it were
+    /// brighter.
+    fn relative_change(&self, before: &[Vec3]) -> f64 {
+        let is_lit = |path: &usize| {
+            self.of_maps[*path].abs().element_sum() > 3.0 * LEAST_MAP_LIGHT * self.brightness(*path).abs()
+        };
+        let lit: Vec<usize> = (0..self.of_maps.len().min(before.len())).filter(is_lit).collect();
+        let count = lit.len().max(1) as f32;
+        let mean = lit.iter().map(|&path| self.brightness(path)).sum::<f32>() / count;
+        let floor = (DARKNESS * mean * mean).max(f32::MIN_POSITIVE);
+        let relative = |&path: &usize| {
+            let change = (before[path] - self.of_maps[path]).length_squared();
+            f64::from((change / (3.0 * (self.brightness(path).powi(2) + floor))).min(1.0))
+        };
+        lit.iter().map(relative).sum::<f64>() / f64::from(count)
+    }
 }
 
 /// At least 2^`bits` photons, of which each light has its turns.
 fn at_least(turns: u64, bits: u32) -> u64 {
     let turns = turns.max(1);
     turns << bits.saturating_sub(turns.ilog2())
-}
-
-/// The mean over some pixels of a picture of squared deviations, mean of the channels, relative to the pixel's brightness and at most 1 each; 0
-/// without pixels. What is dark beside these pixels' mean counts as if it were brighter.
-fn relative_error(picture: &[Vec3], pixels: &[usize], deviation: impl Fn(&usize) -> Vec3) -> f64 {
-    let count = pixels.len().max(1) as f32;
-    let brightness = |pixel: &usize| picture[*pixel].element_sum() / 3.0;
-    let mean = pixels.iter().map(brightness).sum::<f32>() / count;
-    let floor = (DARKNESS * mean * mean).max(f32::MIN_POSITIVE);
-    let relative = |pixel: &usize| {
-        f64::from((deviation(pixel).length_squared() / (3.0 * (brightness(pixel).powi(2) + floor))).min(1.0))
-    };
-    pixels.iter().map(relative).sum::<f64>() / f64::from(count)
 }
 
 #[cfg(test)]
@@ -360,17 +372,12 @@ mod tests {
         while course.stage == Stage::Photons {
             match course.next_step() {
                 Step::Emit(range) => course.note_photons(range.end),
-                Step::Probe if course.emitted == 0 => {
-                    let nothing = Probe { radiance: vec![Vec3::ZERO; 8], deviation: vec![Vec3::ZERO; 8], rays: 1e6 };
-                    course.note_probe(&nothing, 0);
-                }
                 Step::Probe => {
                     looks += 1;
                     // An error that falls with the root of the photons, of 1 at 10,000, alternately up and down.
                     let sign = if looks % 2 == 0 { 1.0 } else { -1.0 };
                     let off = sign * (10_000.0 / course.emitted as f32).sqrt();
-                    let (radiance, deviation) = (vec![Vec3::splat(4.0 + off); 8], vec![Vec3::splat(0.4); 8]);
-                    course.note_probe(&Probe { radiance, deviation, rays: 1e6 }, 1_000_000);
+                    course.note_probe(&[Sighting::default(); 8], vec![Vec3::splat(4.0 + off); 8]);
                 }
                 step => panic!("{step:?}"),
             }

@@ -5,8 +5,8 @@ mod states;
 
 use std::{ops::Range, time::Instant};
 
-use diacaustic_scene::{LightGroups, Scene};
-use diacaustic_shaders::QueryHit;
+use diacaustic_scene::Scene;
+use diacaustic_shaders::{QueryHit, Sighting};
 use diacaustic_surface::MapLayout;
 use glam::Vec3;
 
@@ -14,19 +14,22 @@ use crate::{
     BakeOptions, Emission, EnergyMap, Error, Film, Guide, LayerImage, LightReport, Lightmap, LoopLimit, PilotReport,
     RenderParams, SceneReport, Statistics,
     bake::{BakePass, BakeScene, bake},
-    camera_pass::{CameraPass, Samples, Sightings},
+    camera_pass::{CameraPass, Samples},
     display_pass::DisplayPass,
     error_pass::ErrorPass,
     features::Features,
     gpu::Gpu,
     host_scene::HostScene,
-    lights::{Lights, emissive_materials},
+    irradiance_cache::IrradianceCache,
+    lights::{Lights, emissive_materials, kinds_of_light},
     map_placement::{map_sizes, place_maps, texel_budget},
     map_sums::{EnergyMaps, ResolvePass, Resolving, SumsFormat},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
+    probe_pass::ProbePass,
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
     refine::Course,
     scene_buffers::{self, SceneBuffers},
+    sightings::{SightingPaths, Sightings},
     spectra_records::greatest_weight,
     tile_choice::choose_tiles,
 };
@@ -45,6 +48,10 @@ pub struct RendererOptions {
 /// Bytes that the sums of energy maps may take, if nobody says: 256 MiB.
 pub const DEFAULT_MAP_BUDGET: u64 = 256 << 20;
 
+/// The streams of the seeds of paths that see where the maps matter, and of those that fill the irradiance cache.
+const SIGHTINGS_SEED_STREAM: u32 = 4;
+const CACHE_SEED_STREAM: u32 = 7;
+
 /// Dispatches that one call submits before it waits for them.
 pub(crate) const MOST_IN_FLIGHT: u32 = 256;
 
@@ -62,6 +69,7 @@ pub struct Renderer {
     photon_pass: PhotonPass,
     resolve_pass: ResolvePass,
     camera_pass: CameraPass,
+    probe_pass: ProbePass,
     error_pass: ErrorPass,
     bake_pass: BakePass,
     display_pass: DisplayPass,
@@ -75,12 +83,14 @@ pub struct Renderer {
 #[derive(Debug)]
 struct OnDevice {
     scene: Scene,
-    groups: LightGroups,
     /// Object and triangle of each triangle on the device.
     origins: Vec<(u32, u32)>,
     features: Features,
     buffers: SceneBuffers,
     maps: EnergyMaps,
+    cache: IrradianceCache,
+    /// What camera paths saw of the maps before there were photons.
+    sightings: Vec<Sighting>,
     photons: Photons,
     samples: Samples,
     course: Course,
@@ -149,6 +159,7 @@ impl Renderer {
             photon_pass: PhotonPass::new(gpu, &scene_layout),
             resolve_pass: ResolvePass::new(gpu, &scene_layout),
             camera_pass: CameraPass::new(gpu, &scene_layout),
+            probe_pass: ProbePass::new(gpu, &scene_layout),
             error_pass: ErrorPass::new(gpu),
             bake_pass: BakePass::new(gpu, &scene_layout),
             display_pass: DisplayPass::new(gpu),
@@ -190,7 +201,9 @@ impl Renderer {
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
-        let host = HostScene::build(scene)?;
+        let (host, compiled) = rayon::join(|| HostScene::build(scene), || self.compile(scene));
+        let host = host?;
+        compiled?;
         let report = SceneReport {
             triangles: host.triangles,
             bvh_nodes: host.bvh.nodes.len(),
@@ -203,6 +216,21 @@ impl Renderer {
         let (on_device, report) = self.gpu.clone().guarded(|| self.upload(scene, host, report))?;
         self.scene = Some(on_device);
         Ok(report)
+    }
+
+    /// Compiles the kernels for what a scene makes use of.
+    fn compile(&mut self, scene: &Scene) -> Result<(), Error> {
+        let features = Features::of(scene);
+        let of_photons: Vec<_> =
+            kinds_of_light(scene).into_iter().map(|kind| features.for_photons_of(kind, &scene.settings)).collect();
+        // Nearly every scene has sightings; what is missing is compiled when it is asked for.
+        let of_paths = [features, features.with_sightings()];
+        let Self { gpu, photon_pass, camera_pass, .. } = self;
+        let (photons, paths) = rayon::join(
+            || photon_pass.pipelines.prepare(gpu, &of_photons),
+            || camera_pass.pipelines.prepare(gpu, &of_paths),
+        );
+        photons.and(paths)
     }
 
     /// Bytes that the sums of maps whose size the scene leaves open may take.
@@ -235,14 +263,19 @@ impl Renderer {
         let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
         let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
         let is_open = host.maps.iter().flatten().any(|plan| !plan.is_stated);
-        if !self.is_dry && photons.can_emit() && (scene.settings.guiding || is_open) {
+        let needs_sightings = scene.settings.guiding || is_open || scene.settings.photons.is_none();
+        if !self.is_dry && photons.can_emit() && needs_sightings {
             let start = Instant::now();
             let group = &buffers.bind_group;
             let empty = EnergyMaps::new(gpu, &mut self.resolve_pass, Vec::new(), SumsFormat::NONE, host.features)?;
-            sightings = samples.sightings(gpu, &mut self.camera_pass, host.features, group, &scene.settings, &empty)?;
+            let pass = (&mut self.camera_pass, host.features);
+            let seen_by = (&empty, scene.settings.max_bounces.min(1), SIGHTINGS_SEED_STREAM);
+            let paths = SightingPaths::new(gpu, pass, &samples, group, &scene.settings, seen_by)?;
+            sightings = paths.follow(gpu, &samples)?;
             flights = photons.fly_pilots(gpu, &self.photon_pass, group, &empty, &host.maps, &sightings.list)?;
             report.pilot = Some(PilotReport { time: start.elapsed(), ..flights.report });
         }
+        let cache = IrradianceCache::new(gpu, scene, &host.maps, host.features)?;
         let start = Instant::now();
         let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), format);
         let choice = choose_tiles(&host.maps, &sightings.list, sightings.pixels, flights.landings(), budget);
@@ -257,20 +290,21 @@ impl Renderer {
         let maps = EnergyMaps::new(gpu, &mut self.resolve_pass, placements, format, host.features)?;
         buffers.place_maps(gpu, &self.scene_layout, &maps)?;
         photons.fill(gpu, &self.photon_pass, &maps, groups)?;
-        samples.show(gpu, &self.camera_pass, &maps)?;
+        samples.show(gpu, &self.camera_pass, &maps, &cache)?;
         report.map_bytes = maps.sums_bytes();
-        report.device_bytes = buffers.bytes + maps.bytes + reserve + samples.bytes();
+        report.device_bytes = buffers.bytes + maps.bytes + cache.buffer.size() + reserve + samples.bytes();
         report.photon_turns = photons.turns;
         let on_device = OnDevice {
             course: Course::new(&scene.settings, photons.supply()),
             photons,
             samples,
             scene: scene.clone(),
-            groups: host.lights.groups.clone(),
             origins: host.bvh.triangles.iter().map(|t| (t.object, t.triangle)).collect(),
             features: host.features,
             buffers,
             maps,
+            cache,
+            sightings: sightings.list,
             photon_count: 0,
             sample_count: 0,
             sample_sum: 0,
@@ -299,14 +333,40 @@ impl Renderer {
         Ok(())
     }
 
+    /// Fills the irradiance cache by the light in the maps, if there are twice the photons by which that was done last. Blocks if it does.
+    fn fill_cache(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        let OnDevice { scene, features, buffers, maps, cache, samples, course, photon_count, .. } = on_device;
+        if !cache.has_grids() || course.cache_photons().is_some_and(|before| *photon_count < 2 * before.max(1)) {
+            return Ok(());
+        }
+        let (gpu, pass) = (&self.gpu, (&mut self.camera_pass, *features));
+        let seen_by = (&*maps, scene.settings.max_bounces, CACHE_SEED_STREAM);
+        let error = gpu.guarded(|| {
+            let paths = SightingPaths::new(gpu, pass, samples, &buffers.bind_group, &scene.settings, seen_by)?;
+            cache.fill(gpu, || Ok(paths.follow(gpu, samples)?.list))
+        })?;
+        course.note_cache(*photon_count, error);
+        Ok(())
+    }
+
     /// Submits `count` further samples of every pixel, lit by the photons emitted so far. Blocks after each 256 of them until they are
-    /// done, for submitted work takes memory.
+    /// done, for submitted work takes memory; and before the first, where the scene asks for an irradiance cache, until that is filled.
     ///
     /// # Errors
     /// If no scene is set or the device fails.
     pub fn add_samples(&mut self, count: u32) -> Result<(), Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         on_device.resolve(&self.gpu, &self.resolve_pass);
+        if on_device.scene.settings.irradiance_cache == Some(true) {
+            self.fill_cache()?;
+        }
+        self.take_samples(count)
+    }
+
+    /// Submits samples of every pixel by the maps and the cache as they are.
+    fn take_samples(&mut self, count: u32) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         for number in 1..=count {
             on_device.samples.add(&self.gpu, &on_device.buffers.bind_group);
             on_device.sample_count += 1;
@@ -453,6 +513,7 @@ impl Renderer {
         for (_, buffer) in on_device.accumulated() {
             self.gpu.clear(buffer);
         }
+        on_device.cache.forget(&self.gpu);
         on_device.course = Course::new(&on_device.scene.settings, on_device.photons.supply());
         on_device.photon_count = 0;
         on_device.sample_count = 0;

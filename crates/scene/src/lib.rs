@@ -47,6 +47,7 @@ mod environment_image;
 mod error;
 mod folder;
 mod gltf;
+mod irradiance_cache;
 mod layer;
 mod light;
 mod light_groups;

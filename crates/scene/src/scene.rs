@@ -92,6 +92,9 @@ pub struct RenderSettings {
     pub footprints: bool,
     /// Whether the irradiance of energy maps is smoothed where it differs by no more than photons' noise.
     pub map_filter: bool,
+    /// Whether light that bounces to receivers is measured by a few camera paths and shared by all others; if none, by renders that choose their
+    /// samples, where the scene allows it.
+    pub irradiance_cache: Option<bool>,
     /// Texels along the longer side of each energy map; chosen from the camera's pixel footprint if none.
     pub map_size: Option<u32>,
     /// Memory for the sums of energy maps whose size is left open, MiB; the renderer's choice if none.
@@ -152,6 +155,7 @@ impl Default for RenderSettings {
             guiding: true,
             footprints: false,
             map_filter: true,
+            irradiance_cache: None,
             map_size: None,
             map_budget: None,
             filter: PixelFilter::default(),

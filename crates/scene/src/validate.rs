@@ -40,6 +40,7 @@ impl Scene {
         scene.channels("ambient", self.ambient, 0.0.., "0 or greater")?;
         check_camera(&self.camera)?;
         check_settings(&self.settings)?;
+        self.check_irradiance_cache()?;
         check_output(&self.output)?;
         self.check_materials()?;
         self.check_lights()?;
@@ -132,6 +133,15 @@ impl Scene {
         };
         let lights = self.lights.iter().filter(|light| holds_camera(&light.kind));
         lights.map(|light| Warning::CameraInsideLight { light: light.name.clone() }).collect()
+    }
+}
+
+impl Scene {
+    fn check_irradiance_cache(&self) -> Result<(), Error> {
+        let asked = self.settings.irradiance_cache == Some(true);
+        self.obstacle_to_irradiance_cache().filter(|_| asked).map_or(Ok(()), |obstacle| {
+            Err(At(Subject::Render).error("irradiance_cache", format!("is true, but {obstacle}; leave it out")))
+        })
     }
 }
 

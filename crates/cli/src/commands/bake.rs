@@ -23,7 +23,7 @@ use crate::{
     Error,
     commands::render::display,
     progress::{Progress, Seconds},
-    session::Session,
+    session::{Opening, Session},
 };
 
 /// The file of the whole scene within the folder.
@@ -38,10 +38,11 @@ const SCENE_FILE: &str = "scene.glb";
 pub fn run(arguments: &BakeArguments) -> Result<(), Error> {
     let start = Instant::now();
     let progress = Progress::new(arguments.session.quiet);
+    let opening = Opening::begin(&arguments.session.device);
     let loaded = load(arguments, progress)?;
     let path = arguments.output.clone().unwrap_or_else(|| default_folder(arguments));
     let mut folder = ObjectFolder::open(&path)?;
-    let mut session = Session::open(&arguments.session, loaded, start.elapsed())?;
+    let mut session = Session::open(&arguments.session, opening, loaded, start.elapsed())?;
     session.emit_photons(None)?;
     let objects = bake_objects(&mut session, arguments)?;
     let files = write_lightmaps(&session, &objects, &mut folder, &path, arguments.png)?;

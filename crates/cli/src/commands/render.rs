@@ -29,7 +29,7 @@ use self::{
 use crate::{
     Error,
     progress::{Progress, Seconds},
-    session::Session,
+    session::{Opening, Session},
 };
 
 /// Renders the scene that the arguments name, or frames of it, and writes the files that they ask for. Blocks until all is done; says on the
@@ -51,6 +51,7 @@ fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Ses
     let start = Instant::now();
     let progress = Progress::new(arguments.session.quiet);
     let scene_arguments = &arguments.session.scene;
+    let opening = kept.is_none().then(|| Opening::begin(&arguments.session.device));
     let mut loaded = scene_arguments.load_frame(frame)?;
     override_settings(&mut loaded.scene, arguments);
     let mut outputs = Outputs::choose(arguments, &loaded.scene.output.files, frame)?;
@@ -62,7 +63,10 @@ fn render(arguments: &RenderArguments, frame: Option<u32>, kept: &mut Option<Ses
             session.set_scene(loaded, load)?;
             session
         }
-        None => kept.insert(Session::open(&arguments.session, loaded, load)?),
+        None => {
+            let opening = opening.unwrap_or_else(|| Opening::begin(&arguments.session.device));
+            kept.insert(Session::open(&arguments.session, opening, loaded, load)?)
+        }
     };
     let checkpoints = arguments.checkpoint.as_deref();
     let checkpoints = checkpoints.map(|path| Checkpoints::new(path, arguments.every, &scene_arguments.scene));

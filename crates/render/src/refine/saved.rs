@@ -18,11 +18,14 @@ impl Course {
         words.number(self.map_error.to_bits());
         words.number(self.camera_error.is_some().into());
         words.number(self.camera_error.unwrap_or_default().to_bits());
+        let (photons, error) = self.cache.unwrap_or_default();
+        words.number(self.cache.is_some().into());
+        words.number(photons);
+        words.number(error.to_bits());
         words.number(self.sampled.into());
         words.number(self.tile_count as u64);
         words.number(self.listed.len() as u64);
         words.0.extend(self.listed.iter().flat_map(|&(tile, missing)| [tile, missing]));
-        words.picture(&self.unlit);
         let (photons, picture) = self.last_look.as_ref().map_or((0, &[][..]), |(photons, picture)| (*photons, picture));
         words.number(photons);
         words.picture(picture);
@@ -40,10 +43,11 @@ impl Course {
         let (emitted, next_look) = (words.number()?, words.number()?);
         let map_error = f64::from_bits(words.number()?);
         let (is_known, camera_error) = (words.number()? != 0, f64::from_bits(words.number()?));
+        let (is_filled, cache) = (words.number()? != 0, (words.number()?, f64::from_bits(words.number()?)));
+        let cache = is_filled.then_some(cache);
         let (sampled, tile_count) = (words.number()? as u32, words.number()? as usize);
         let count = words.number()? as usize;
         let listed = words.take(count.checked_mul(2)?)?.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
-        let unlit = words.picture()?;
         let (photons, picture) = (words.number()?, words.picture()?);
         let last_look = (photons > 0).then_some((photons, picture));
         let camera_error = is_known.then_some(camera_error);
@@ -53,10 +57,10 @@ impl Course {
             next_look,
             map_error,
             camera_error,
+            cache,
             sampled,
             tile_count,
             listed,
-            unlit,
             last_look,
             ..self
         };
@@ -129,8 +133,9 @@ mod tests {
     fn a_course_goes_on_where_it_was() {
         let mut saved = course(None);
         (saved.emitted, saved.next_look, saved.map_error) = (1 << 33, 3 << 33, 0.25);
-        (saved.unlit, saved.last_look) = (vec![Vec3::X], Some((7, vec![Vec3::Y, Vec3::Z])));
+        saved.last_look = Some((7, vec![Vec3::Y, Vec3::Z]));
         (saved.listed, saved.tile_count, saved.camera_error) = (vec![(3, 4), (9, 8)], 12, Some(0.5));
+        saved.cache = Some((5, 0.125));
         let resumed = course(None).resumed(&saved.words()).unwrap();
         assert_eq!(format!("{resumed:?}"), format!("{saved:?}"));
         for length in 0..saved.words().len() {

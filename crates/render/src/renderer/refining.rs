@@ -3,7 +3,6 @@
 use super::Renderer;
 use crate::{
     Error, Refinement,
-    camera_pass::ProbedScene,
     refine::{Course, Step},
 };
 
@@ -28,7 +27,8 @@ impl Renderer {
             }
             Step::Probe => self.probe_maps(),
             Step::Sample(count) => {
-                self.add_samples(count)?;
+                self.prepare_light()?;
+                self.take_samples(count)?;
                 self.gpu.wait()?;
                 self.on_course(|course| course.note_samples(count))
             }
@@ -69,20 +69,25 @@ impl Renderer {
         self.refinement()
     }
 
+    /// Brings what samples read of the photons up to date: the maps' irradiance and the irradiance cache. Blocks where it fills the cache.
+    fn prepare_light(&mut self) -> Result<(), Error> {
+        let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
+        on_device.resolve(&self.gpu, &self.resolve_pass);
+        self.fill_cache()
+    }
+
     fn probe_maps(&mut self) -> Result<Refinement, Error> {
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
         on_device.resolve(&self.gpu, &self.resolve_pass);
-        let photon_rays = on_device.photons.counts(&self.gpu)?.rays;
-        let probed =
-            ProbedScene { seed: on_device.scene.settings.seed, maps: &on_device.maps, groups: &on_device.groups };
-        let group = &on_device.buffers.bind_group;
-        let probe = on_device.samples.probe(&self.gpu, &mut self.camera_pass, on_device.features, group, &probed)?;
-        self.on_course(|course| course.note_probe(&probe, photon_rays))
+        let (group, sightings) = (&on_device.buffers.bind_group, &on_device.sightings);
+        let of_maps = self.probe_pass.run(&self.gpu, group, &on_device.maps, sightings)?;
+        on_device.course.note_probe(sightings, of_maps);
+        self.refinement()
     }
 
     fn sample_tiles(&mut self, tiles: &[u32], count: u32) -> Result<(), Error> {
+        self.prepare_light()?;
         let on_device = self.scene.as_mut().ok_or(Error::NoScene)?;
-        on_device.resolve(&self.gpu, &self.resolve_pass);
         let group = &on_device.buffers.bind_group;
         let pixels = on_device.samples.add_to_tiles(&self.gpu, &self.camera_pass, group, tiles, count)?;
         on_device.sample_sum += pixels * u64::from(count);

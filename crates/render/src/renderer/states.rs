@@ -72,7 +72,8 @@ impl OnDevice {
     /// What photons and samples accumulate in, by name.
     pub(super) fn accumulated(&self) -> Vec<(&'static str, &wgpu::Buffer)> {
         let ledgers = [("ledgers", &self.photons.ledger)];
-        self.maps.accumulated().into_iter().chain(ledgers).chain(self.samples.accumulated()).collect()
+        let cache = [("irradiance cache", &self.cache.buffer)];
+        self.maps.accumulated().into_iter().chain(cache).chain(ledgers).chain(self.samples.accumulated()).collect()
     }
 
     /// What the bits of photons and samples depend on.

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Time until the first picture; each further one comes after twice the time of the one before.
-const FIRST: Duration = Duration::from_secs(2);
+const FIRST: Duration = Duration::from_millis(500);
 /// The longest time between two pictures, unless they are dear.
 const LONGEST: Duration = Duration::from_secs(60);
 /// A picture may take this share of the time, as one in so many.
