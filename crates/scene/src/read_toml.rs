@@ -185,7 +185,6 @@ impl<'d> Sections<'d> {
             // What the paper has not: unset, it is off. More rays are brighter there, so that there is always a number.
             true => RenderSettings {
                 guiding: false,
-                map_filter: false,
                 max_bounces: 0,
                 photons: Some(PAPER_RAYS),
                 ..RenderSettings::default()

@@ -154,7 +154,7 @@ impl Default for RenderSettings {
             max_bounces: 8,
             guiding: true,
             footprints: false,
-            map_filter: true,
+            map_filter: false,
             irradiance_cache: None,
             map_size: None,
             map_budget: None,
