@@ -6,7 +6,9 @@
 Needs target/release/diacaustic and, beside the repository, the folder shared/reference with the meshes and pictures of an independent tracer;
 without them it says so and ends with status 0. Each map is read at the floor points of the brighter half of the caustic: pixels of at least the mean
 of those that the reference calls the caustic, which no direct light reaches, and which indirect light makes brighter by a per cent at most. There are 8 x 8
-points a pixel, so that no camera noise is measured. The error is that of the reference's compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
+points a pixel, so that no camera noise is measured. A square of 2 m around the caustic is all the floor there is, so that both sides' maps of the
+finest size fit into bindings of 128 MiB. Each coarser map follows from the finest of the same photons without loss: a texel's bilinear weight is a
+sum of those of the finer texels around it. The error is that of the reference's compare.py: the mean of min(1, (i - r)^2 / (r^2 + 0.01 mean(r)^2)). Prints a table in Markdown.
 """
 import argparse
 import pathlib
@@ -21,6 +23,9 @@ PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
 POINTS = 8
 # Direct light that a pixel of the umbra may have, against the mean of the caustic.
 UMBRA = 0.001
+FLOOR = "center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4]"
+# Share of the floor's side that there is.
+PART = 0.5
 
 
 def channel(path, name):
@@ -38,8 +43,30 @@ def channel(path, name):
     raise KeyError(f"{path} has no channel {name}")
 
 
-def run(scene, settings, folder, photons, samples, layers="false"):
-    text = scene.read_text().replace("[render]", "[render]\n" + settings).replace("../../../shared/reference", str(REFERENCE))
+def floor_around(points):
+    """A part of the floor, as a scene has it, with the middle of some points on it as its own; and where on it the points lie, 0 to 1."""
+    middles = [(axis.min() + axis.max()) / 2 for axis in points]
+    places = [(axis - middle) / PART + 0.5 for axis, middle in zip(points, middles)]
+    assert all(axis.min() >= 0 and axis.max() <= 1 for axis in places), "the caustic is larger than that part of the floor"
+    x, z = 4 * (middles[0] - 0.5), -4 * (middles[1] - 0.5)
+    return f"center = [{x}, 0, {z}], edge_u = [{4 * PART}, 0, 0], edge_v = [0, 0, {-4 * PART}]", places
+
+
+def halved(flux):
+    """What falls on texels of twice the width, of that on an odd number of texels along each axis."""
+    import numpy
+
+    for _ in range(2):
+        coarse = flux[::2].copy()
+        coarse[:-1] += flux[1::2] / 2
+        coarse[1:] += flux[1::2] / 2
+        flux = coarse.T
+    return numpy.ascontiguousarray(flux)
+
+
+def run(scene, settings, folder, photons, samples, layers="false", floor=FLOOR):
+    assert FLOOR in scene.read_text()
+    text = scene.read_text().replace(FLOOR, floor).replace("[render]", "[render]\n" + settings).replace("../../../shared/reference", str(REFERENCE))
     copy = folder / "scene.toml"
     copy.write_text(f"{text}\n[output]\nlayers = {layers}\n")
     picture = folder / "picture.exr"
@@ -96,17 +123,25 @@ def errors(name, sizes, counts):
     table = {}
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        run(path, "map_size = 64\nmax_bounces = 0", folder, 1000, 32, '["direct"]')
+        run(path, "map_size = 64\nmax_bounces = 0\nmap_filter = false", folder, 1000, 32, '["direct"]')
         direct = channel(folder / "picture.exr", "direct.G")
         mean = reference[mask].mean()
         mask &= (direct <= UMBRA * mean) & (reference >= mean)
         direct = direct[mask]
         u, v = (a.reshape(mask.shape[0], POINTS, mask.shape[1], POINTS).swapaxes(1, 2)[mask] for a in floor_points(scene))
         r = reference[mask]
-        for size in sizes:
-            for photons in counts:
-                run(path, f"map_size = {size}\nmax_bounces = 0", folder, photons, 1)
-                seen = direct + albedo / numpy.pi * bilinear(channel(folder / "floor.exr", "G"), u, v).mean((1, 2))
+        floor, (u, v) = floor_around((u, v))
+        for photons in counts:
+            cells = int(sizes[-1] * PART)
+            run(path, f"map_size = {cells + 1}\nmax_bounces = 0\nmap_filter = false", folder, photons, 1, floor=floor)
+            areas = numpy.ones((cells + 1, cells + 1))
+            for border in (areas[0], areas[-1], areas[:, 0], areas[:, -1]):
+                border /= 2
+            flux = channel(folder / "floor.exr", "G") * areas
+            for size in reversed(sizes):
+                while cells > size * PART:
+                    cells, flux, areas = cells // 2, halved(flux), halved(areas)
+                seen = direct + albedo / numpy.pi * bilinear(flux / areas, u, v).mean((1, 2))
                 error = (seen - r) ** 2 / (r**2 + 0.01 * r.mean() ** 2)
                 table[size, photons] = float(numpy.minimum(error, 1).mean())
                 print(f"{name}: {size} texels, {photons} photons: {table[size, photons]:.2e}", file=sys.stderr, flush=True)
@@ -138,8 +173,8 @@ def plot(tables, sizes, counts, path):
 def main():
     numbers = lambda text: [int(float(number)) for number in text.split(",")]
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sizes", type=numbers, default=[64, 128, 256, 512, 1024, 2048])
-    parser.add_argument("--photons", type=numbers, default=[100_000, 1_000_000])
+    parser.add_argument("--sizes", type=numbers, default=[64, 128, 256, 512, 1024, 2048, 4096], help="powers of two, ascending")
+    parser.add_argument("--photons", type=numbers, default=[100_000, 1_000_000, 10_000_000])
     parser.add_argument("--plot")
     arguments = parser.parse_args()
     missing = [path for path in (PROGRAM, REFERENCE / "ball.exr") if not path.exists()]

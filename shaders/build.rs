@@ -7,8 +7,8 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wesl::{BasicSourceMap, FileResolver, ManglerKind, ModulePath, SourceMap, Wesl};
 
 /// The root modules: one file per pass.
-const KERNELS: [&str; 9] =
-    ["photons", "camera", "bake", "resolve", "probe", "errors", "display", "intersect", "loop_check"];
+const KERNELS: [&str; 10] =
+    ["photons", "camera", "bake", "resolve", "smooth", "probe", "errors", "display", "intersect", "loop_check"];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);

@@ -9,7 +9,7 @@ import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
 import package::film::texels::{footprint, map_layer, map_place, tile_at};
 import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
-import package::layout::features::{has_dispersion, has_footprints, has_guide, paper_refraction, photon_light_kind, PAPER_NONE};
+import package::layout::features::{has_dispersion, has_footprints, has_guide, has_squares, paper_refraction, photon_light_kind, PAPER_NONE};
 import package::layout::records::{load_corners, load_triangle};
 import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
@@ -146,17 +146,30 @@ fn folded_weight(ellipse: Ellipse, texel: vec2<u32>, cells: vec2<f32>) -> f32 {
     return whole * cover.x * cover.y;
 }
 
-/// Adds units of flux to a texel.
+/// Adds to the high word of a sum.
+fn add_to_high(word: u32, gained: u32) {
+    if gained != 0u {
+        atomicAdd(&energy_high[word], gained);
+    }
+}
+
+/// Adds units of flux to a texel, and their square.
 fn add_to_texel(texel: u32, units: vec3<i32>) {
+    let first = select(3u, 4u, has_squares) * texel;
     for (var channel = 0u; channel < 3u; channel++) {
         let share = units[channel];
         if share != 0 {
-            let word = 3u * texel + channel;
-            let gained = carry(atomicAdd(&energy_low[word], bitcast<u32>(share)), share);
-            if gained != 0u {
-                atomicAdd(&energy_high[word], gained);
-            }
+            add_to_high(first + channel, carry(atomicAdd(&energy_low[first + channel], bitcast<u32>(share)), share));
         }
+    }
+    if has_squares {
+        // In sixteenths, so that the squares of many large photons fit into 64 bits.
+        let sixteenths = vec3<f32>(units) / 16.0;
+        let square = round(dot(sixteenths, sixteenths) / 3.0);
+        let high = floor(square / 4294967296.0);
+        let low = u32(square - high * 4294967296.0);
+        let before = atomicAdd(&energy_low[first + 3u], low);
+        add_to_high(first + 3u, u32(high) + select(0u, 1u, before + low < before));
     }
 }
 

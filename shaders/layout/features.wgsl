@@ -27,6 +27,8 @@ override has_dispersion: bool = true;
 override photon_light_kind: u32 = 0u;
 /// Whether photons lay their flux over the footprint of the part of the emission that they stand for.
 override has_footprints: bool = true;
+/// Whether the squares of what photons bring are summed.
+override has_squares: bool = true;
 /// Whether a guide moves photons.
 override has_guide: bool = true;
 /// Whether light follows the 2016 paper's model, and how it turns at glass: one of the PAPER_ constants.

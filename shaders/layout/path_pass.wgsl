@@ -97,7 +97,7 @@ const LAYER_INDIRECT: u32 = 3u;
 const LIGHT_LAYERS: u32 = 4u;
 
 @group(1) @binding(0) var<uniform> path_params: PathParams;
-/// Irradiance of each texel, W/m², in the order of the maps' tiles, row by row; the last component is unused. With several light groups, of each
+/// Irradiance of each texel, W/m², in the order of the maps' tiles, row by row; the last component is its variance. With several light groups, of each
 /// texel first all light's, then each group's.
 @group(2) @binding(0) var irradiance: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> film: Film;

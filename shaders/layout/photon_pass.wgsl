@@ -115,7 +115,7 @@ struct PhotonLedger {
 /// interval that k/n moves into. First the columns of the guide of the first two emission numbers and the rows of each column, then the
 /// same of the next two.
 @group(1) @binding(1) var guide: texture_2d<u32>;
-/// Signed 64-bit sums of flux, for each texel and channel: the low words, and apart from them, so that twice as much can be bound, the high ones.
+/// Signed 64-bit sums of flux, for each texel and channel, and where they are kept of the squares of what photons brought: the low words, and apart from them, so that twice as much can be bound, the high ones.
 @group(2) @binding(0) var<storage, read_write> energy_low: array<atomic<u32>>;
 @group(2) @binding(1) var<storage, read_write> energy_high: array<atomic<u32>>;
 @group(2) @binding(2) var<storage, read_write> ledger: PhotonLedger;

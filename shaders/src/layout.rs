@@ -480,24 +480,93 @@ shared_structs! {
         /// Distance from the lens along the view, metres.
         depth: f32,
     }
+    /// A texel of the maps.
+    struct MapTexel {
+        /// Area of its surface, m². In the profile `paper`, what its sum is divided by. 0 without surface.
+        area: f32,
+        /// What it lies between, if it gets its irradiance from welds: 1 more than the index of a MapWeldPart that holds how many of these
+        /// follow; else 0.
+        link: u32,
+        /// The chart that its surface belongs to, from 1; 0 without surface, NONE where it belongs to several.
+        chart: u32,
+        /// Index of its MapTileRecord.
+        tile: u32,
+    }
+
+    /// A place at which texels of several tiles meet.
+    struct MapWeld {
+        /// The texel of the coarsest tile there.
+        owner: u32,
+        /// Index of the first of the parts whose flux it takes.
+        first_part: u32,
+        /// Parts.
+        part_count: u32,
+        /// The area of these parts, m².
+        area: f32,
+    }
+
+    /// A part of a weld or a texel.
+    struct MapWeldPart {
+        /// Its index: of a texel, if it is of a weld; of a weld, if it is of a texel.
+        index: u32,
+        /// Its share.
+        weight: f32,
+    }
     /// One dispatch of the resolve pass.
     struct ResolveParams {
         /// Watts in a unit of the sums, divided by the photons emitted.
         watts_per_unit: f32,
-        /// Texels in all maps.
-        texel_count: u32,
+        /// Texels, or welds, that the dispatch resolves.
+        count: u32,
         /// Workgroups along x.
         groups_x: u32,
         /// Light groups whose maps there are.
         light_groups: u32,
         /// Texels from a light group's maps to the next one's.
         group_texels: u32,
+        /// Sums of a texel: of three channels, and a fourth of squares where they are kept.
+        sums: u32,
+        /// 1 for a dispatch over welds, which comes first.
+        of_welds: u32,
         /// Unused.
-        padding_0: u32,
+        padding: u32,
+    }
+    /// A tile of the maps.
+    struct MapTileRecord {
+        /// Index of its first texel, row by row.
+        first_texel: u32,
+        /// Cells along x.
+        columns: u32,
+        /// Cells along y.
+        rows: u32,
+        /// Index of its MapLayer.
+        layer: u32,
+        /// Where its first texel stands on the map's plane.
+        origin_x: f32,
+        /// The same along y.
+        origin_y: f32,
+        /// Width of a cell on the plane.
+        cell_x: f32,
+        /// Its height.
+        cell_y: f32,
+    }
+
+    /// One dispatch of the smooth pass.
+    struct SmoothParams {
+        /// Texels, or welds, that the dispatch smooths.
+        count: u32,
+        /// Workgroups along x.
+        groups_x: u32,
+        /// 1 for a dispatch over welds, which comes first.
+        of_welds: u32,
+        /// Cells from a texel to those that it is compared with.
+        distance: i32,
+        /// Factor on the variance that the smoothed texels have if their errors do not depend on each other.
+        variance_factor: f32,
+        /// 1 for a dispatch that smooths variance alone: few photons say little of it.
+        only_variance: u32,
         /// Unused.
-        padding_1: u32,
-        /// Unused.
-        padding_2: u32,
+        padding: u32,
     }
     /// A ray asked about.
     struct QueryRay {

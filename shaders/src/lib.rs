@@ -7,11 +7,11 @@ mod layout;
 
 pub use layout::{
     AimTarget, BakeParams, BakeTexel, BvhNode, CameraParams, DataLayers, DisplayParams, ErrorParams, LOST, Landing,
-    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTile, Material, MaterialTextures, NONE, PathParams, PhotonParams,
-    ProbeParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS, ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE,
-    SharedField, SharedStruct, Sighting, SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners,
-    VertexColors, WAVELENGTH_STEPS, ledger, light_kind, light_layer, map_tile, material_kind, paper_refraction,
-    tangent, texture_flag, triangle_flag,
+    Light, MAX_AIM_TARGETS, MapLayer, MapSquare, MapTexel, MapTile, MapTileRecord, MapWeld, MapWeldPart, Material,
+    MaterialTextures, NONE, PathParams, PhotonParams, ProbeParams, QueryHit, QueryRay, RECORDS_WIDTH_BITS,
+    ResolveParams, SHARED_CONSTANTS, SHARED_STRUCTS, STACK_SIZE, SharedField, SharedStruct, Sighting, SmoothParams,
+    SurfaceTexture, TextureCoordinates, TileError, Triangle, TriangleCorners, VertexColors, WAVELENGTH_STEPS, ledger,
+    light_kind, light_layer, map_tile, material_kind, paper_refraction, tangent, texture_flag, triangle_flag,
 };
 
 /// A linked kernel.
@@ -43,6 +43,8 @@ pub const CAMERA: Kernel = kernel!("camera", Some("sample_pixels"));
 pub const BAKE: Kernel = kernel!("bake", Some("sample_texels"));
 /// Between the phases: fixed-point flux to irradiance.
 pub const RESOLVE: Kernel = kernel!("resolve", Some("resolve_irradiance"));
+/// After it: noise is smoothed.
+pub const SMOOTH: Kernel = kernel!("smooth", Some("smooth_maps"));
 /// Looks up what the energy maps hold where camera paths met them.
 pub const PROBE: Kernel = kernel!("probe", Some("look_up_sightings"));
 /// Estimates the error of each tile of the picture.
@@ -55,7 +57,8 @@ pub const INTERSECT: Kernel = kernel!("intersect", Some("intersect_rays"));
 pub const LOOP_CHECK: Kernel = kernel!("loop_check", Some("count_iterations"));
 
 /// Every kernel.
-pub const KERNELS: [Kernel; 9] = [PHOTONS, CAMERA, BAKE, RESOLVE, PROBE, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
+pub const KERNELS: [Kernel; 10] =
+    [PHOTONS, CAMERA, BAKE, RESOLVE, SMOOTH, PROBE, ERRORS, DISPLAY, INTERSECT, LOOP_CHECK];
 
 /// Invocations in a workgroup of every compute kernel but [`LOOP_CHECK`].
 pub const WORKGROUP_SIZE: u32 = 64;

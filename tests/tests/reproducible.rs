@@ -57,7 +57,9 @@ fn pieces_in_any_order_equal_the_whole() {
 
 #[test]
 fn maps_of_two_machines_merge_into_the_whole() {
-    let scene = teapot();
+    let mut scene = teapot();
+    // Merged maps are not filtered.
+    scene.settings.map_filter = false;
     let whole = map(&scene, std::slice::from_ref(&(0..100_000)));
     let mut merged = map(&scene, std::slice::from_ref(&(0..40_000)));
     assert!(merged.merge(&map(&scene, std::slice::from_ref(&(40_000..100_000)))));

@@ -14,15 +14,15 @@ use crate::{Error, Irradiance, png::write_rgb8};
 /// The least width of a map in the picture, pixels: smaller maps are enlarged by a whole factor.
 const LEAST_WIDTH: u32 = 512;
 /// Between things, pixels before enlarging text.
-const GAP: u32 = 8;
+const GAP: u32 = 16;
 /// Width of the scale's bar.
-const BAR: u32 = 16;
+const BAR: u32 = 32;
 /// Letters beside the bar.
 const TICK_LETTERS: u32 = 8;
 /// The least factor by which text is enlarged.
-const LEAST_TEXT: u32 = 2;
+const LEAST_TEXT: u32 = 1;
 /// Pixels of a map for each further factor.
-const WIDTH_PER_TEXT_SIZE: u32 = 1536;
+const WIDTH_PER_TEXT_SIZE: u32 = 3072;
 
 const PAPER: Color = [250, 250, 250];
 const INK: Color = [20, 20, 20];
@@ -71,7 +71,7 @@ impl Plan {
         let enlarged = LEAST_WIDTH.div_ceil(map.width).max(1);
         let (map_width, map_height) = (map.width * enlarged, map.height * enlarged);
         let text = LEAST_TEXT + map_width / WIDTH_PER_TEXT_SIZE;
-        let (gap, line) = (GAP * text, (LETTER + 4) * text);
+        let (gap, line) = (GAP * text, (LETTER[1] + 8) * text);
         let caption = if layers > 1 { line } else { 0 };
         Self {
             enlarged,
@@ -81,7 +81,7 @@ impl Plan {
             map_width,
             map_height,
             layers,
-            width: map_width + 4 * gap + (BAR + TICK_LETTERS * LETTER) * text,
+            width: map_width + 4 * gap + (BAR + TICK_LETTERS * LETTER[0]) * text,
             height: gap + line + layers * (caption + map_height + gap),
         }
     }
@@ -126,13 +126,14 @@ fn draw_scale(canvas: &mut Canvas, scale: &Scale, plan: &Plan) {
         let part = 1.0 - (y as f32 + 0.5) / height as f32;
         canvas.fill([left, top + y], [BAR * plan.text, 1], viridis(part));
     }
-    let space = (LETTER + 2) * plan.text;
+    let space = (LETTER[1] + 4) * plan.text;
     let mut free_below = u32::MAX;
     for (part, label) in scale.ticks() {
         let y = top + ((1.0 - part) * (height - 1) as f32).round() as u32;
         canvas.fill([left + BAR * plan.text, y], [plan.gap / 2, plan.text], INK);
         // Numbers that would cover the one before are left out, from the lowest up.
-        let text_top = y.saturating_sub(LETTER * plan.text / 2).min(top + height - (LETTER * plan.text).min(height));
+        let text_top =
+            y.saturating_sub(LETTER[1] * plan.text / 2).min(top + height - (LETTER[1] * plan.text).min(height));
         if free_below >= space && text_top <= free_below.saturating_sub(space) {
             canvas.text([left + BAR * plan.text + plan.gap, text_top], &label, plan.text, INK);
             free_below = text_top;

@@ -63,6 +63,8 @@ pub struct SceneSize {
     pub map_bytes: u64,
     /// Bytes that the sums of maps whose size the scene leaves open may take.
     pub map_budget: u64,
+    /// Whether the maps are filtered.
+    pub map_filter: bool,
 }
 
 /// Wall-clock time of each stage, seconds.

@@ -1,6 +1,8 @@
 //! Energy maps as the application reads them.
 
-use diacaustic_surface::{MapTile, MapTiles};
+use std::sync::Arc;
+
+use diacaustic_surface::{MapTile, MapTiles, Welds};
 use glam::{DVec2, DVec3};
 
 /// One object's energy map, read from the device.
@@ -19,6 +21,8 @@ pub struct EnergyMap {
     pub sums: Vec<[i64; 3]>,
     /// Area of each texel, m².
     pub areas: Vec<f64>,
+    /// How tiles join: texels of several tiles that stand at one place are one.
+    pub welds: Arc<Welds>,
     /// Units of the sums in a watt.
     pub units_per_watt: f64,
     /// Photons that the sums are of, over every light.
@@ -26,6 +30,10 @@ pub struct EnergyMap {
     /// The size of the map by which the profile `paper` divides sums of energy, of which each photon brings the same, however many there are;
     /// none where photons share the light's flux.
     pub paper_size: Option<f64>,
+    /// Smoothed irradiance of each texel, W/m², in a scene that asks for it; none after [`Self::merge`].
+    pub smoothed: Option<Vec<[f32; 3]>>,
+    /// Irradiance of each texel by its sums, W/m².
+    pub(crate) unsmoothed: Vec<DVec3>,
 }
 
 /// The most points along each side of a resampled texel at which a map is looked at.
@@ -41,13 +49,26 @@ impl EnergyMap {
         DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * photons as f64)
     }
 
-    /// Irradiance of a texel, W/m²; 0 where it holds no surface. In the profile `paper`, energy over the map's size.
+    /// Irradiance of a texel as the picture shows it, W/m²: smoothed if the scene asks for it. 0 where it holds no surface. In the profile
+    /// `paper`, energy over the map's size.
     ///
     /// # Panics
     /// If `texel` is out of range.
     pub fn irradiance(&self, texel: usize) -> DVec3 {
-        let area = self.areas[texel];
-        if area > 0.0 { self.flux(texel) / self.paper_size.unwrap_or(area) } else { DVec3::ZERO }
+        let smoothed = self.smoothed.as_ref().map(|smoothed| DVec3::from(smoothed[texel].map(f64::from)));
+        smoothed.unwrap_or(self.unsmoothed[texel])
+    }
+
+    /// The irradiance that follows from the sums.
+    pub(crate) fn resolve(&mut self) {
+        let flux: Vec<DVec3> = (0..self.sums.len()).map(|texel| self.flux(texel)).collect();
+        self.unsmoothed = match self.paper_size {
+            Some(size) => {
+                let over = |(flux, area): (&DVec3, &f64)| if *area > 0.0 { *flux / size } else { DVec3::ZERO };
+                flux.iter().zip(&self.areas).map(over).collect()
+            }
+            None => self.welds.irradiance(&flux, &self.areas),
+        };
     }
 
     /// Irradiance of a place of a layer's plane, in the layout's texels, W/m²: between the texels of its tile, as the picture shows it; 0
@@ -111,8 +132,8 @@ impl EnergyMap {
         self.areas[texel as usize] > 0.0
     }
 
-    /// Adds the photons of another run of the same scene and seed: the sums of photons 0 to N and N to M are those of 0 to M.
-    /// Returns false, and changes nothing, if the maps differ in their texels or scale.
+    /// Adds the photons of another run of the same scene and seed: the sums of photons 0 to N and N to M are those of 0 to M. The result is not
+    /// smoothed. Returns false, and changes nothing, if the maps differ in their texels or scale.
     #[must_use]
     pub fn merge(&mut self, other: &Self) -> bool {
         let alike = self.tiles == other.tiles && self.units_per_watt == other.units_per_watt;
@@ -121,6 +142,8 @@ impl EnergyMap {
             for (sum, more) in self.sums.iter_mut().zip(&other.sums) {
                 *sum = std::array::from_fn(|channel| sum[channel].wrapping_add(more[channel]));
             }
+            self.smoothed = None;
+            self.resolve();
         }
         alike
     }

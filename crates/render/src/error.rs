@@ -41,8 +41,8 @@ pub enum Error {
     },
     /// The energy maps are larger than the device allows.
     #[error(
-        "the energy maps of each light group take {asked} bytes and the device allows {available}: lower map_size, or \
-         keep fewer light groups apart"
+        "the energy maps of each light group take {asked} bytes and the device allows {available}: lower map_size, \
+         keep fewer light groups apart, or set map_filter = false"
     )]
     MapsTooLarge {
         /// Bytes of the sums asked for.

@@ -44,6 +44,8 @@ pub(crate) struct Features {
     guide: bool,
     /// Whether photons have footprints.
     footprints: bool,
+    /// Whether the squares of what photons bring are summed.
+    squares: bool,
     /// The 2016 paper's model of light, and how it refracts.
     paper_refraction: u32,
     /// Whether camera paths note which texels they see.
@@ -81,6 +83,7 @@ impl Features {
             photon_light_kind: 0,
             guide: false,
             footprints: false,
+            squares: false,
             paper_refraction: paper_constant(&scene.settings),
             sightings: false,
             irradiance_cache: scene.keeps_irradiance_cache(),
@@ -104,8 +107,8 @@ impl Features {
     /// What the photons of one kind of light need: what other lights need does not count.
     pub fn for_photons_of(self, kind: u32, settings: &RenderSettings) -> Self {
         let Self { gloss, conductors, textures, vertex_colors, holes, blends, dispersion, paper_refraction, .. } = self;
-        let RenderSettings { guiding: guide, footprints, .. } = *settings;
-        let photons = Self { photon_light_kind: kind, guide, footprints, ..Self::default() };
+        let RenderSettings { guiding: guide, footprints, map_filter: squares, .. } = *settings;
+        let photons = Self { photon_light_kind: kind, guide, footprints, squares, ..Self::default() };
         Self { gloss, conductors, textures, vertex_colors, holes, blends, dispersion, paper_refraction, ..photons }
     }
 
@@ -113,6 +116,11 @@ impl Features {
     pub fn with_sightings(self) -> Self {
         let sightings = Self { sightings: true, irradiance_cache: false, halves: false, ..self };
         Self { light_layers: false, data_layers: false, light_groups: 0, ..sightings }
+    }
+
+    /// What the filter of energy maps needs.
+    pub fn for_filter(self) -> Self {
+        Self { light_groups: self.light_groups, ..Self::default() }
     }
 
     /// The same for paths that begin at a lightmap's texels.
@@ -137,6 +145,7 @@ impl Features {
             ("photon_light_kind", f64::from(self.photon_light_kind)),
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),
+            ("has_squares", f64::from(self.squares)),
             ("paper_refraction", f64::from(self.paper_refraction)),
             ("notes_sightings", f64::from(self.sightings)),
             ("has_irradiance_cache", f64::from(self.irradiance_cache)),

@@ -288,6 +288,38 @@ impl Gpu {
         let staging = self.poisoned_staging(size)?;
         let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_buffer_to_buffer(buffer, range.start * element, &staging, 0, size);
+        self.read_staging(encoder, &staging)
+    }
+
+    /// Copies texels `range`, of 16 bytes each, to the host. Blocks until the device has done all submitted work.
+    pub fn read_texels<T: Pod>(&self, texture: &wgpu::Texture, range: std::ops::Range<u64>) -> Result<Vec<T>, Error> {
+        let rows = range.start >> RECORDS_WIDTH_BITS..range.end.div_ceil(1 << RECORDS_WIDTH_BITS);
+        let height = (rows.end - rows.start) as u32;
+        let row = 16u32 << RECORDS_WIDTH_BITS;
+        let staging = self.poisoned_staging(u64::from(row) * u64::from(height))?;
+        let mut encoder = self.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_buffer(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 0, y: rows.start as u32, z: 0 },
+                aspect: wgpu::TextureAspect::All,
+            },
+            wgpu::TexelCopyBufferInfo {
+                buffer: &staging,
+                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+            },
+            wgpu::Extent3d { width: 1 << RECORDS_WIDTH_BITS, height, depth_or_array_layers: 1 },
+        );
+        let mut texels = self.read_staging(encoder, &staging)?;
+        let first = (range.start - (rows.start << RECORDS_WIDTH_BITS)) as usize;
+        texels.truncate(first + (range.end - range.start) as usize);
+        texels.drain(..first);
+        Ok(texels)
+    }
+
+    /// Submits copies into a staging buffer, and reads it. Blocks.
+    fn read_staging<T: Pod>(&self, encoder: wgpu::CommandEncoder, staging: &wgpu::Buffer) -> Result<Vec<T>, Error> {
         self.queue.submit([encoder.finish()]);
         let (sender, receiver) = std::sync::mpsc::channel();
         staging.slice(..).map_async(wgpu::MapMode::Read, move |result| {

@@ -155,6 +155,7 @@ mod map_placement;
 mod map_plan;
 mod map_records;
 mod map_sums;
+mod map_texels;
 mod material_records;
 mod paper;
 mod photon_pass;

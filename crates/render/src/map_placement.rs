@@ -1,13 +1,10 @@
 //! From the chosen tiles to maps that lie one after the other, within what the device can hold.
 
-use diacaustic_surface::{MapLayout, MapTiles};
+use std::sync::Arc;
 
-use crate::{
-    Error, MapSize,
-    map_plan::MapPlan,
-    map_sums::{TEXEL_BYTES, most_texels},
-    tile_choice::TileChoice,
-};
+use diacaustic_surface::{MapLayout, MapTiles, TexelSurface, Welds};
+
+use crate::{Error, MapSize, map_plan::MapPlan, map_sums::SumsFormat, tile_choice::TileChoice};
 
 /// One object's map within the buffers of all maps.
 #[derive(Clone, Debug)]
@@ -15,8 +12,10 @@ pub(crate) struct MapPlacement {
     pub layout: MapLayout,
     pub tiles: MapTiles,
     pub first_texel: u64,
-    /// Area of each texel, m².
-    pub areas: Vec<f64>,
+    /// The surface behind each texel.
+    pub surfaces: Vec<TexelSurface>,
+    /// How its tiles join.
+    pub welds: Arc<Welds>,
     /// What sums are divided by in place of areas, in the profile `paper`.
     pub paper_size: Option<f64>,
 }
@@ -24,14 +23,15 @@ pub(crate) struct MapPlacement {
 impl MapPlacement {
     /// What the sums of each texel are divided by; 0 where there is no surface.
     pub fn divisors(&self) -> impl Iterator<Item = f32> {
-        self.areas.iter().map(|&area| if area > 0.0 { self.paper_size.unwrap_or(area) as f32 } else { 0.0 })
+        let divisor = |area: f64| if area > 0.0 { self.paper_size.unwrap_or(area) as f32 } else { 0.0 };
+        self.surfaces.iter().map(move |texel| divisor(texel.area))
     }
 }
 
 /// Texels that the maps whose size the scene leaves open may have in each light group.
-pub(crate) fn texel_budget(plans: &[Option<MapPlan>], bytes: u64, limits: &wgpu::Limits, groups: usize) -> u64 {
+pub(crate) fn texel_budget(plans: &[Option<MapPlan>], bytes: u64, limits: &wgpu::Limits, format: SumsFormat) -> u64 {
     let stated: u64 = plans.iter().flatten().filter(|plan| plan.is_stated).map(|plan| plan.layout.texel_count()).sum();
-    (bytes / TEXEL_BYTES / groups as u64).min(most_texels(limits, groups).saturating_sub(stated))
+    (bytes / format.bytes() / format.groups).min(format.most_texels(limits).saturating_sub(stated))
 }
 
 /// What is told of each map.
@@ -60,19 +60,22 @@ pub(crate) fn map_sizes(plans: &[Option<MapPlan>], choice: &TileChoice) -> Vec<M
 pub(crate) fn place_maps(
     plans: Vec<Option<MapPlan>>,
     choice: TileChoice,
-    most: u64,
+    format: SumsFormat,
+    limits: &wgpu::Limits,
 ) -> Result<Vec<Option<MapPlacement>>, Error> {
     let asked: u64 = choice.tiles.iter().flatten().map(|tiles| tiles.texel_count()).sum();
+    let most = format.most_texels(limits);
     if asked > most {
-        return Err(Error::MapsTooLarge { asked: asked * TEXEL_BYTES, available: most * TEXEL_BYTES });
+        return Err(Error::MapsTooLarge { asked: asked * format.bytes(), available: most * format.bytes() });
     }
     let mut next_texel = 0;
     let placed = plans.into_iter().zip(choice.tiles).map(|(plan, tiles)| {
         let (plan, tiles) = (plan?, tiles?);
         let first_texel = next_texel;
         next_texel += tiles.texel_count();
-        let areas = plan.texel_areas(&tiles);
-        Some(MapPlacement { first_texel, areas, tiles, layout: plan.layout, paper_size: plan.paper_size })
+        let surfaces = plan.texel_surfaces(&tiles);
+        let welds = Arc::new(Welds::new(&tiles, &surfaces));
+        Some(MapPlacement { first_texel, surfaces, welds, tiles, layout: plan.layout, paper_size: plan.paper_size })
     });
     Ok(placed.collect())
 }

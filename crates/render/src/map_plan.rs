@@ -1,7 +1,7 @@
 //! Which objects have energy maps, and how their surfaces lie on them.
 
 use diacaustic_scene::{Camera, Object, RenderSettings, Scene};
-use diacaustic_surface::{MapLayout, MapTiles, WorldTriangle, texel_areas};
+use diacaustic_surface::{MapLayout, MapTiles, TexelSurface, WorldTriangle, texel_areas, texel_surfaces};
 use glam::{Mat3, Vec3};
 
 /// Units of the plane of a map whose size nobody chose in the extent of the object: at least, at most. Its tiles may be coarser or finer.
@@ -28,6 +28,11 @@ impl MapPlan {
     /// Area of each texel of tiles, m².
     pub fn texel_areas(&self, tiles: &MapTiles) -> Vec<f64> {
         texel_areas(&self.layout, tiles, &self.receivers)
+    }
+
+    /// The surface behind each texel of tiles.
+    pub fn texel_surfaces(&self, tiles: &MapTiles) -> Vec<TexelSurface> {
+        texel_surfaces(&self.layout, tiles, &self.receivers)
     }
 }
 

@@ -1,46 +1,86 @@
 //! Energy maps on the device: the sums that photons fill, and the irradiance that follows from them.
 
-use diacaustic_shaders::{RECORDS_WIDTH_BITS, RESOLVE, ResolveParams, WORKGROUP_SIZE};
+use diacaustic_scene::RenderSettings;
+use diacaustic_shaders::{RECORDS_WIDTH_BITS, RESOLVE, ResolveParams, SMOOTH, SmoothParams, WORKGROUP_SIZE};
 
 use crate::{
     EnergyMap, Error,
+    features::{Features, Pipelines},
     gpu::{Binding, Gpu, Purpose, texture_bytes},
     map_placement::MapPlacement,
+    map_texels::MapTexels,
 };
 
-/// Bytes of a texel's three 64-bit sums.
-pub(crate) const TEXEL_BYTES: u64 = 24;
-/// Bytes of a texel in each of the two buffers: of low and of high words.
-const WORDS_BYTES: u64 = 12;
 /// Texels in whose multiples the maps of light groups begin: where a device can bind a part of a buffer.
 const GROUP_ALIGNMENT: u64 = 64;
+/// Steps of the filter: a texel is compared with those that are 1, 2, 4, … cells away.
+const FILTER_STEPS: u32 = 5;
+/// The passes, one more than steps, end in the target where they begin.
+const _: () = assert!(FILTER_STEPS % 2 == 1);
+/// What photons that fall on four texels each make of the variance of a mean over many texels, against that of independent texels: the squares
+/// of bilinear weights sum to (2/3)² on average, their sum to 1.
+const BILINEAR_VARIANCE: f32 = 2.25;
 
 const SUMS: Purpose = Purpose { what: "half the sums of the energy maps", remedy: "lower map_size" };
 const GROUP_SUMS: Purpose = Purpose {
     what: "half the sums of the energy maps of all light groups",
     remedy: "lower map_size, or keep fewer light groups apart",
 };
-const AREAS: Purpose = Purpose { what: "the texels' areas", remedy: "lower map_size" };
 const IRRADIANCE: Purpose = Purpose { what: "the texels' irradiance", remedy: "lower map_size" };
+const FILTERED: Purpose =
+    Purpose { what: "the texels' filtered irradiance", remedy: "lower map_size or set map_filter = false" };
+const WELDED: Purpose = Purpose { what: "irradiance where tiles meet", remedy: "lower map_budget" };
 
-/// The most texels of all maps of a light group that a device can hold, where each of `groups` has maps of its own.
-pub(crate) fn most_texels(limits: &wgpu::Limits, groups: usize) -> u64 {
-    let groups = groups as u64;
-    let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    let of_sums = (bindable / (groups * WORDS_BYTES)).saturating_sub(GROUP_ALIGNMENT);
-    let of_irradiance = (u64::from(limits.max_texture_dimension_2d) << RECORDS_WIDTH_BITS) / irradiance_entries(groups);
-    of_sums.min(bindable / size_of::<f32>() as u64).min(of_irradiance)
+/// What is summed for each texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SumsFormat {
+    /// Light groups that have maps of their own.
+    pub groups: u64,
+    /// Whether there are sums of squares too, for the filter.
+    pub has_squares: bool,
 }
 
-/// Entries of irradiance of a texel: with several groups, all light's stands beside theirs.
-fn irradiance_entries(groups: u64) -> u64 {
-    if groups > 1 { 1 + groups } else { 1 }
-}
+impl SumsFormat {
+    /// That of no maps.
+    pub const NONE: Self = Self { groups: 1, has_squares: false };
 
-/// Bytes that a texel takes on the device: its sums, its area and its irradiance.
-pub(crate) fn bytes_of_texel(groups: usize) -> u64 {
-    let groups = groups as u64;
-    groups * TEXEL_BYTES + size_of::<f32>() as u64 + 16 * irradiance_entries(groups)
+    pub fn new(settings: &RenderSettings, groups: usize) -> Self {
+        Self { groups: groups as u64, has_squares: settings.map_filter }
+    }
+
+    /// 64-bit sums of a texel.
+    fn sums(self) -> u64 {
+        if self.has_squares { 4 } else { 3 }
+    }
+
+    /// Bytes of a texel's sums.
+    pub fn bytes(self) -> u64 {
+        8 * self.sums()
+    }
+
+    /// Bytes of a texel in each of the two buffers: of low and of high words.
+    fn words_bytes(self) -> u64 {
+        4 * self.sums()
+    }
+
+    /// Entries of irradiance of a texel: with several groups, all light's stands beside theirs.
+    fn entries(self) -> u64 {
+        if self.groups > 1 { 1 + self.groups } else { 1 }
+    }
+
+    /// The most texels of all maps of a light group that a device can hold.
+    pub fn most_texels(self, limits: &wgpu::Limits) -> u64 {
+        let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let of_sums = bindable / (self.groups * self.words_bytes()) / GROUP_ALIGNMENT * GROUP_ALIGNMENT;
+        let of_textures = (u64::from(limits.max_texture_dimension_2d) << RECORDS_WIDTH_BITS) / self.entries();
+        of_sums.min(of_textures)
+    }
+
+    /// Bytes that a texel takes on the device: its sums, its record and its irradiance, filtered too if it is.
+    pub fn bytes_on_device(self) -> u64 {
+        let irradiance = 16 * self.entries();
+        self.groups * self.bytes() + 16 + irradiance * if self.has_squares { 2 } else { 1 }
+    }
 }
 
 /// The maps of all objects on the device.
@@ -48,80 +88,194 @@ pub(crate) fn bytes_of_texel(groups: usize) -> u64 {
 pub(crate) struct EnergyMaps {
     pub placements: Vec<Option<MapPlacement>>,
     sums: Sums,
+    /// What the picture shows.
     pub irradiance: wgpu::TextureView,
     pub bytes: u64,
     texel_count: u64,
-    /// Light groups that have maps of their own.
-    groups: u64,
-    params: wgpu::Buffer,
-    bind_group: wgpu::BindGroup,
+    weld_count: u64,
+    format: SumsFormat,
+    resolve_params: wgpu::Buffer,
+    resolve_group: wgpu::BindGroup,
+    /// What passes write into: irradiance, and in scenes with a filter a second texture in turn with it.
+    targets: Vec<Target>,
+    filter_params: wgpu::Buffer,
+    /// The pipeline of the filter, if there is one.
+    filter: Option<wgpu::ComputePipeline>,
 }
 
-/// The words of the sums, three for each texel.
+/// The words of the sums, three or four for each texel.
 #[derive(Debug)]
 struct Sums {
     low: wgpu::Buffer,
     high: wgpu::Buffer,
 }
 
-/// The pipeline from sums to irradiance.
+/// A texture of irradiance.
+#[derive(Debug)]
+struct Target {
+    texture: wgpu::Texture,
+    /// To write into it.
+    written: wgpu::BindGroup,
+    /// To filter it.
+    read: wgpu::BindGroup,
+}
+
+/// The pipelines from sums to irradiance.
 #[derive(Debug)]
 pub(crate) struct ResolvePass {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
+    maps_layout: wgpu::BindGroupLayout,
+    sums_layout: wgpu::BindGroupLayout,
+    filter_layout: wgpu::BindGroupLayout,
+    resolve: wgpu::ComputePipeline,
+    smooth: Pipelines,
+}
+
+/// What photons so far are divided by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Resolving<'s> {
+    /// The scene on the device.
+    pub scene: &'s wgpu::BindGroup,
+    pub units_per_watt: f32,
+    /// Photons that share the lights' flux.
+    pub photons: u64,
+    /// Whether photons have footprints.
+    pub footprints: bool,
 }
 
 impl ResolvePass {
-    pub fn new(gpu: &Gpu) -> Self {
-        let bindings = [Binding::Uniform, Binding::Read, Binding::Read, Binding::Read, Binding::WriteTexels];
-        let layout = gpu.layout("resolve", wgpu::ShaderStages::COMPUTE, &bindings);
-        let pipeline = gpu.compute_pipeline(RESOLVE, &[&layout]);
-        Self { layout, pipeline }
+    pub fn new(gpu: &Gpu, scene_layout: &wgpu::BindGroupLayout) -> Self {
+        let layout = |label, bindings: &[Binding]| gpu.layout(label, wgpu::ShaderStages::COMPUTE, bindings);
+        let maps_layout = layout(
+            "map texels",
+            &[Binding::Records, Binding::Read, Binding::Read, Binding::ReadWrite, Binding::WriteTexels],
+        );
+        let sums_layout = layout("resolve", &[Binding::Uniform, Binding::Read, Binding::Read]);
+        let filter_layout = layout("smooth", &[Binding::Uniform, Binding::Read, Binding::Texels]);
+        let resolve = gpu.compute_pipeline(RESOLVE, &[scene_layout, &maps_layout, &sums_layout]);
+        let smooth = Pipelines::new(SMOOTH, &[scene_layout, &maps_layout, &filter_layout]);
+        Self { maps_layout, sums_layout, filter_layout, resolve, smooth }
     }
 
-    /// Turns the sums of `photons` photons into irradiance.
-    pub fn run(&self, gpu: &Gpu, maps: &EnergyMaps, units_per_watt: f32, photons: u64) {
-        let groups = maps.texel_count.div_ceil(u64::from(WORKGROUP_SIZE)) as u32;
-        let groups_x = groups.clamp(1, 65_535);
-        let params = ResolveParams {
-            watts_per_unit: (1.0 / (f64::from(units_per_watt) * photons.max(1) as f64)) as f32,
-            texel_count: maps.texel_count as u32,
-            groups_x,
-            light_groups: maps.groups as u32,
+    /// Turns the sums of photons into irradiance, and filters it in scenes that ask for it.
+    pub fn run(&self, gpu: &Gpu, maps: &EnergyMaps, of: Resolving) {
+        let template = ResolveParams {
+            watts_per_unit: (1.0 / (f64::from(of.units_per_watt) * of.photons.max(1) as f64)) as f32,
+            light_groups: maps.format.groups as u32,
             group_texels: maps.group_texels() as u32,
+            sums: maps.format.sums() as u32,
             ..Default::default()
         };
-        gpu.queue.write_buffer(&maps.params, 0, bytemuck::bytes_of(&params));
-        gpu.dispatch(&self.pipeline, &[&maps.bind_group], [groups_x, groups.div_ceil(groups_x)]);
+        for (of_welds, count) in maps.dispatches() {
+            let size = workgroups(count);
+            let params = ResolveParams { count: count as u32, groups_x: size[0], of_welds, ..template };
+            gpu.queue.write_buffer(&maps.resolve_params, 0, bytemuck::bytes_of(&params));
+            gpu.dispatch(&self.resolve, &[of.scene, &maps.targets[0].written, &maps.resolve_group], size);
+        }
+        if let Some(pipeline) = maps.filter.as_ref().filter(|_| of.photons > 0) {
+            Self::filter(gpu, maps, pipeline, of);
+        }
+    }
+
+    /// Filters irradiance, from one target to the other and back: first its variance alone, then in steps of growing distance.
+    fn filter(gpu: &Gpu, maps: &EnergyMaps, pipeline: &wgpu::ComputePipeline, of: Resolving) {
+        for pass in 0..=FILTER_STEPS {
+            let from = pass as usize % 2;
+            let variance_factor = if pass == 1 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
+            for (of_welds, count) in maps.dispatches() {
+                let size = workgroups(count);
+                let params = SmoothParams {
+                    count: count as u32,
+                    groups_x: size[0],
+                    of_welds,
+                    distance: 1 << pass.saturating_sub(1),
+                    variance_factor,
+                    only_variance: u32::from(pass == 0),
+                    ..Default::default()
+                };
+                gpu.queue.write_buffer(&maps.filter_params, 0, bytemuck::bytes_of(&params));
+                let groups = [of.scene, &maps.targets[1 - from].written, &maps.targets[from].read];
+                gpu.dispatch(pipeline, &groups, size);
+            }
+        }
     }
 }
 
+/// Workgroups, along x and y, for so many invocations.
+fn workgroups(count: u64) -> [u32; 2] {
+    let groups = count.div_ceil(u64::from(WORKGROUP_SIZE)) as u32;
+    let along_x = groups.clamp(1, 65_535);
+    [along_x, groups.div_ceil(along_x)]
+}
+
 impl EnergyMaps {
-    /// Maps for each of `groups` light groups, one after the other.
+    /// Maps for each light group, one after the other.
     pub fn new(
         gpu: &Gpu,
-        pass: &ResolvePass,
+        pass: &mut ResolvePass,
         placements: Vec<Option<MapPlacement>>,
-        groups: usize,
+        format: SumsFormat,
+        features: Features,
     ) -> Result<Self, Error> {
-        let groups = groups as u64;
-        let purpose = if groups > 1 { GROUP_SUMS } else { SUMS };
+        let filter = format.has_squares.then(|| pass.smooth.get(gpu, features.for_filter()));
+        let purpose = if format.groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
-        let words_bytes = groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * WORDS_BYTES;
-        let areas: Vec<f32> = placements.iter().flatten().flat_map(MapPlacement::divisors).collect();
+        let words_bytes = format.groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * format.words_bytes();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
-        let areas = gpu.filled(AREAS, &areas)?;
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let entries = irradiance_entries(groups) * texel_count;
-        let texture = gpu.texels(IRRADIANCE, wgpu::TextureFormat::Rgba32Float, usage, entries)?;
-        let irradiance = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let params = gpu.uniform::<ResolveParams>("resolve");
-        let buffers = [&params, &sums.low, &sums.high, &areas];
-        let mut resources: Vec<_> = buffers.map(|buffer| buffer.as_entire_binding()).into();
-        resources.push(wgpu::BindingResource::TextureView(&irradiance));
-        let bind_group = gpu.bind_resources(&pass.layout, resources);
-        let bytes = sums.low.size() + sums.high.size() + areas.size() + texture_bytes(&texture);
-        Ok(Self { placements, sums, irradiance, bytes, texel_count, groups, params, bind_group })
+        let texels = MapTexels::new(gpu, &placements)?;
+        let welded = gpu.zeroed(WELDED, texels.weld_count * format.entries() * 16)?;
+        let (resolve_params, filter_params) =
+            (gpu.uniform::<ResolveParams>("resolve"), gpu.uniform::<SmoothParams>("smooth"));
+        let resolve_group = gpu.bind(&pass.sums_layout, &[&resolve_params, &sums.low, &sums.high]);
+        let target = |purpose: Purpose| {
+            let usage = wgpu::TextureUsages::STORAGE_BINDING
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC;
+            let entries = format.entries() * texel_count;
+            let texture = gpu.texels(purpose, wgpu::TextureFormat::Rgba32Float, usage, entries)?;
+            let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+            let written = gpu.bind_resources(
+                &pass.maps_layout,
+                vec![
+                    wgpu::BindingResource::TextureView(&texels.records),
+                    texels.welds.as_entire_binding(),
+                    texels.parts.as_entire_binding(),
+                    welded.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&view),
+                ],
+            );
+            let read = gpu.bind_resources(
+                &pass.filter_layout,
+                vec![
+                    filter_params.as_entire_binding(),
+                    texels.tiles.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&view),
+                ],
+            );
+            Ok(Target { texture, written, read })
+        };
+        let purposes = [IRRADIANCE, FILTERED].into_iter().take(if format.has_squares { 2 } else { 1 });
+        let targets = purposes.map(target).collect::<Result<Vec<_>, Error>>()?;
+        let textures: u64 = targets.iter().map(|target| texture_bytes(&target.texture)).sum();
+        let shown = targets.first().map(|target| target.texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        Ok(Self {
+            bytes: sums.low.size() + sums.high.size() + texels.bytes + welded.size() + textures,
+            irradiance: shown.expect("there is a target"),
+            placements,
+            sums,
+            texel_count,
+            weld_count: texels.weld_count,
+            format,
+            resolve_params,
+            resolve_group,
+            targets,
+            filter_params,
+            filter,
+        })
+    }
+
+    /// The dispatches of a pass over all texels: whether over welds, and over how many. Those over welds come first.
+    fn dispatches(&self) -> impl Iterator<Item = (u32, u64)> {
+        [(1, self.weld_count), (0, self.texel_count)].into_iter().filter(|&(_, count)| count > 0)
     }
 
     /// Texels from a light group's maps to the next one's.
@@ -131,17 +285,17 @@ impl EnergyMaps {
 
     /// Entries of irradiance of a texel, of which the first is of all light.
     pub fn irradiance_entries(&self) -> u64 {
-        irradiance_entries(self.groups)
+        self.format.entries()
     }
 
     /// Bytes of the sums of all light groups.
     pub fn sums_bytes(&self) -> u64 {
-        self.groups * self.texel_count * TEXEL_BYTES
+        self.format.groups * self.texel_count * self.format.bytes()
     }
 
     /// Low and high words of the sums of a light group.
     pub fn sums_of(&self, group: usize) -> [wgpu::BindingResource<'_>; 2] {
-        let bytes = self.group_texels() * WORDS_BYTES;
+        let bytes = self.group_texels() * self.format.words_bytes();
         let part =
             |buffer| wgpu::BufferBinding { buffer, offset: group as u64 * bytes, size: std::num::NonZero::new(bytes) };
         [&self.sums.low, &self.sums.high].map(|buffer| wgpu::BindingResource::Buffer(part(buffer)))
@@ -152,7 +306,7 @@ impl EnergyMaps {
         [("low words of energy maps", &self.sums.low), ("high words of energy maps", &self.sums.high)]
     }
 
-    /// Reads one object's map. Blocks.
+    /// Reads one object's map, of photons that have been resolved. Blocks.
     pub fn read(
         &self,
         gpu: &Gpu,
@@ -162,26 +316,45 @@ impl EnergyMaps {
     ) -> Result<Option<EnergyMap>, Error> {
         let Some(placement) = &self.placements[object] else { return Ok(None) };
         let count = placement.tiles.texel_count();
-        let mut sums = vec![[0i64; 3]; count as usize];
-        for group in 0..self.groups {
-            let first = 3 * (group * self.group_texels() + placement.first_texel);
-            let words = first..first + 3 * count;
-            let low: Vec<u32> = gpu.read(&self.sums.low, words.clone())?;
-            let high: Vec<u32> = gpu.read(&self.sums.high, words)?;
-            for (sum, (low, high)) in sums.as_flattened_mut().iter_mut().zip(low.into_iter().zip(high)) {
-                *sum = sum.wrapping_add((u64::from(high) << 32 | u64::from(low)).cast_signed());
-            }
-        }
-        Ok(Some(EnergyMap {
+        let mut map = EnergyMap {
             width: placement.layout.width,
             height: placement.layout.height,
             layers: placement.layout.layers,
             tiles: placement.tiles.clone(),
-            sums,
-            areas: placement.areas.clone(),
+            sums: self.read_sums(gpu, placement.first_texel, count)?,
+            areas: placement.surfaces.iter().map(|texel| texel.area).collect(),
+            welds: placement.welds.clone(),
             units_per_watt: f64::from(units_per_watt),
             photons,
             paper_size: placement.paper_size,
-        }))
+            smoothed: None,
+            unsmoothed: Vec::new(),
+        };
+        map.resolve();
+        if self.format.has_squares {
+            let entries = self.format.entries();
+            let range = entries * placement.first_texel..entries * (placement.first_texel + count);
+            let texels: Vec<[f32; 4]> = gpu.read_texels(&self.targets[0].texture, range)?;
+            map.smoothed = Some(texels.iter().step_by(entries as usize).map(|&[r, g, b, _]| [r, g, b]).collect());
+        }
+        Ok(Some(map))
+    }
+
+    /// The sums of flux of some texels, over all light groups.
+    fn read_sums(&self, gpu: &Gpu, first_texel: u64, count: u64) -> Result<Vec<[i64; 3]>, Error> {
+        let mut sums = vec![[0i64; 3]; count as usize];
+        for group in 0..self.format.groups {
+            let first = self.format.sums() * (group * self.group_texels() + first_texel);
+            let words = first..first + self.format.sums() * count;
+            let low: Vec<u32> = gpu.read(&self.sums.low, words.clone())?;
+            let high: Vec<u32> = gpu.read(&self.sums.high, words)?;
+            let stride = self.format.sums() as usize;
+            for (texel, (low, high)) in sums.iter_mut().zip(low.chunks(stride).zip(high.chunks(stride))) {
+                for (sum, (&low, &high)) in texel.iter_mut().zip(low.iter().zip(high)) {
+                    *sum = sum.wrapping_add((u64::from(high) << 32 | u64::from(low)).cast_signed());
+                }
+            }
+        }
+        Ok(sums)
     }
 }

@@ -23,7 +23,7 @@ use crate::{
     irradiance_cache::IrradianceCache,
     lights::{Lights, emissive_materials, kinds_of_light},
     map_placement::{map_sizes, place_maps, texel_budget},
-    map_sums::{EnergyMaps, ResolvePass, bytes_of_texel, most_texels},
+    map_sums::{EnergyMaps, ResolvePass, Resolving, SumsFormat},
     photon_pass::{Flights, PhotonPass, PhotonScene, Photons},
     probe_pass::ProbePass,
     ray_query::{QueryPass, Ray, RayBatch, RayHit},
@@ -106,11 +106,22 @@ impl OnDevice {
     /// Turns the sums of the photons so far into irradiance, if that is not done.
     fn resolve(&mut self, gpu: &Gpu, pass: &ResolvePass) {
         if self.unresolved {
-            // In the profile `paper` photons do not share the light's flux.
-            let sharing = if self.scene.settings.paper.is_some() { 1 } else { self.photon_count };
-            pass.run(gpu, &self.maps, self.photons.units_per_watt, sharing);
+            self.run(gpu, pass);
             self.unresolved = false;
         }
+    }
+
+    /// Turns the sums of the photons so far into irradiance.
+    fn run(&self, gpu: &Gpu, pass: &ResolvePass) {
+        let settings = &self.scene.settings;
+        let of = Resolving {
+            scene: &self.buffers.bind_group,
+            units_per_watt: self.photons.units_per_watt,
+            // In the profile `paper` photons do not share the light's flux.
+            photons: if settings.paper.is_some() { 1 } else { self.photon_count },
+            footprints: settings.footprints,
+        };
+        pass.run(gpu, &self.maps, of);
     }
 
     /// Samples of a pixel, on average.
@@ -146,7 +157,7 @@ impl Renderer {
         let scene_layout = gpu.layout("scene", wgpu::ShaderStages::COMPUTE, &scene_buffers::BINDINGS);
         Self {
             photon_pass: PhotonPass::new(gpu, &scene_layout),
-            resolve_pass: ResolvePass::new(gpu),
+            resolve_pass: ResolvePass::new(gpu, &scene_layout),
             camera_pass: CameraPass::new(gpu, &scene_layout),
             probe_pass: ProbePass::new(gpu, &scene_layout),
             error_pass: ErrorPass::new(gpu),
@@ -247,6 +258,7 @@ impl Renderer {
             around: host.around,
         };
         let groups = host.lights.groups.names.len();
+        let format = SumsFormat::new(&scene.settings, groups);
         let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, self.loop_limit)?;
         let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
         let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
@@ -255,7 +267,7 @@ impl Renderer {
         if !self.is_dry && photons.can_emit() && needs_sightings {
             let start = Instant::now();
             let group = &buffers.bind_group;
-            let empty = EnergyMaps::new(gpu, &self.resolve_pass, Vec::new(), 1)?;
+            let empty = EnergyMaps::new(gpu, &mut self.resolve_pass, Vec::new(), SumsFormat::NONE, host.features)?;
             let pass = (&mut self.camera_pass, host.features);
             let seen_by = (&empty, scene.settings.max_bounces.min(1), SIGHTINGS_SEED_STREAM);
             let paths = SightingPaths::new(gpu, pass, &samples, group, &scene.settings, seen_by)?;
@@ -265,17 +277,17 @@ impl Renderer {
         }
         let cache = IrradianceCache::new(gpu, scene, &host.maps, host.features)?;
         let start = Instant::now();
-        let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), groups);
+        let budget = texel_budget(&host.maps, report.map_budget, &gpu.device.limits(), format);
         let choice = choose_tiles(&host.maps, &sightings.list, sightings.pixels, flights.landings(), budget);
         report.maps = map_sizes(&host.maps, &choice);
         // What open maps may take beyond this, where no pilot has said how much they do.
         let open =
             host.maps.iter().zip(&choice.tiles).filter(|(plan, _)| plan.as_ref().is_some_and(|plan| !plan.is_stated));
         let taken: u64 = open.filter_map(|(_, tiles)| tiles.as_ref()).map(|tiles| tiles.texel_count()).sum();
-        let reserve = if self.is_dry && is_open { budget.saturating_sub(taken) * bytes_of_texel(groups) } else { 0 };
-        let placements = place_maps(host.maps, choice, most_texels(&gpu.device.limits(), groups))?;
+        let reserve = if self.is_dry && is_open { budget.saturating_sub(taken) * format.bytes_on_device() } else { 0 };
+        let placements = place_maps(host.maps, choice, format, &gpu.device.limits())?;
         report.maps_time += start.elapsed();
-        let maps = EnergyMaps::new(gpu, &self.resolve_pass, placements, groups)?;
+        let maps = EnergyMaps::new(gpu, &mut self.resolve_pass, placements, format, host.features)?;
         buffers.place_maps(gpu, &self.scene_layout, &maps)?;
         photons.fill(gpu, &self.photon_pass, &maps, groups)?;
         samples.show(gpu, &self.camera_pass, &maps, &cache)?;
@@ -409,6 +421,9 @@ impl Renderer {
             return Err(Error::NoSuchObject { index: object, count });
         }
         let units = on_device.photons.units_per_watt;
+        if on_device.unresolved && on_device.scene.settings.map_filter {
+            on_device.run(&self.gpu, &self.resolve_pass);
+        }
         on_device.maps.read(&self.gpu, object, units, on_device.photon_count)
     }
 

@@ -85,6 +85,7 @@ fn what_the_paper_has_not_is_refused_by_name() {
         ("profile = \"paper\"\n", "", "counts only with profile = \"paper\" in [render]"),
         ("profile = \"paper\"", "profile = \"paper\"\nguiding = true", "x.toml:8:1: render: guiding is true"),
         ("profile = \"paper\"", "profile = \"paper\"\nfootprints = true", "footprints is true"),
+        ("profile = \"paper\"", "profile = \"paper\"\nmap_filter = true", "map_filter is true"),
         ("profile = \"paper\"", "profile = \"paper\"\nmax_bounces = 2", "max_bounces is 2"),
         ("profile = \"paper\"", "profile = \"paper\"\nwavelength = 550", "wavelength is set"),
         ("profile = \"paper\"", "profile = \"paper\"\nmap_size = 5", "render: map_size is set"),

@@ -20,6 +20,7 @@ use self::{
 };
 
 pub use self::uvs::check_map_uvs;
+use crate::texel_area::TexelChart;
 
 /// The layout of one object's energy map. Texel (i, j) stands at the point (i, j) of the map's plane.
 ///
@@ -113,6 +114,14 @@ impl MapLayout {
             chart_count: atlas.frames.len() as u32,
             cell_count: atlas.cells as u32,
             metres_per_texel: (placed.texel * facets.metres) as f32,
+        }
+    }
+
+    /// The chart of a triangle of the object's mesh.
+    pub(crate) fn chart_of(&self, triangle: u32) -> TexelChart {
+        match self.charts.get(triangle as usize).copied().unwrap_or(0) {
+            cell if cell + self.cell_count >= self.chart_count && self.cell_count > 0 => TexelChart::Several,
+            chart => TexelChart::One(chart),
         }
     }
 

@@ -11,6 +11,7 @@ mod texel_area;
 mod tile;
 mod touching;
 mod triangles;
+mod weld;
 
 pub use bounds::{BoundingSphere, caster_bounds, merge_spheres, scene_bounds};
 pub use bvh::{Bvh, BvhNode, MAX_DEPTH};
@@ -18,7 +19,8 @@ pub use chart::{MapLayout, check_map_uvs};
 pub use error::Error;
 pub use light_surfaces::{DISK_CORNERS, light_surfaces};
 pub use media::DielectricBoundaries;
-pub use texel_area::texel_areas;
+pub use texel_area::{TexelChart, TexelSurface, texel_areas, texel_surfaces};
 pub use tile::{FINEST_LEVEL, MapSquare, MapTile, MapTiles};
 pub use touching::{RAY_OFFSET, separate_touching};
 pub use triangles::{WorldTriangle, world_triangles};
+pub use weld::{Weld, WeldPart, Welds};

@@ -6,14 +6,52 @@ use glam::{DVec2, DVec3, Vec3};
 
 use crate::{MapLayout, MapSquare, MapTile, MapTiles, WorldTriangle, tile::FINEST_LEVEL};
 
-/// The area of each texel, m²: the integral of its bilinear weight over the object's surface in the world that lies on its tile, so
-/// that the areas of each layer sum to the surface's area.
+/// The surface behind a texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TexelSurface {
+    /// The integral of the texel's bilinear weight over the object's surface in the world that lies on its tile, m².
+    pub area: f64,
+    /// The chart that all of it belongs to.
+    pub chart: TexelChart,
+}
+
+/// The chart of what lies behind a texel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TexelChart {
+    /// There is no surface.
+    #[default]
+    None,
+    /// All is of this one.
+    One(u32),
+    /// Several charts share the texel, or it is of a cell, in which pieces of surface lie on one another.
+    Several,
+}
+
+impl TexelChart {
+    /// What both are together.
+    fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::None, one) | (one, Self::None) => one,
+            (one, other) if one == other => one,
+            _ => Self::Several,
+        }
+    }
+}
+
+/// The area of each texel, m²: that of its surface, so that the areas of each layer sum to the surface's area.
 ///
 /// `triangles` are the object's, in any order; those without an area may be missing.
 pub fn texel_areas(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTriangle]) -> Vec<f64> {
-    let mut areas = vec![0.0; tiles.texel_count() as usize];
+    texel_surfaces(layout, tiles, triangles).into_iter().map(|texel| texel.area).collect()
+}
+
+/// The surface behind each texel.
+///
+/// `triangles` are the object's, in any order; those without an area may be missing.
+pub fn texel_surfaces(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTriangle]) -> Vec<TexelSurface> {
+    let mut texels = vec![TexelSurface::default(); tiles.texel_count() as usize];
     for layer in 0..layout.layers {
-        if layer > 0 && copy_of_first_layer(tiles, layer, &mut areas) {
+        if layer > 0 && copy_of_first_layer(tiles, layer, &mut texels) {
             continue;
         }
         let index = tiles.tiles.iter().filter(|tile| tile.square.layer == layer).map(|tile| (tile.square, *tile));
@@ -21,6 +59,7 @@ pub fn texel_areas(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTrian
         for triangle in triangles {
             let places = triangle.arrange(layout.corners[triangle.triangle as usize]).map(|p| p.as_dvec2());
             let area = 0.5 * world_double_area(triangle.corners);
+            let chart = layout.chart_of(triangle.triangle);
             let chart_area = 0.5 * (places[1] - places[0]).perp_dot(places[2] - places[0]).abs();
             let spread = if chart_area > 1e-9 * tiles.cell_area_bound() {
                 Spread::Over(places, area / chart_area)
@@ -28,21 +67,21 @@ pub fn texel_areas(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTrian
                 Spread::Folded(folded_points(places, area))
             };
             for (y, x) in (0..tiles.roots[1]).flat_map(|y| (0..tiles.roots[0]).map(move |x| (y, x))) {
-                add(tiles, &index, MapSquare { layer, level: 0, x, y }, &spread, &mut areas);
+                add(tiles, &index, MapSquare { layer, level: 0, x, y }, (&spread, chart), &mut texels);
             }
         }
     }
-    areas
+    texels
 }
 
-/// Copies the areas of a layer that has the same tiles as the first; returns whether it has.
-fn copy_of_first_layer(tiles: &MapTiles, layer: u32, areas: &mut [f64]) -> bool {
+/// Copies the texels of a layer that has the same tiles as the first; returns whether it has.
+fn copy_of_first_layer(tiles: &MapTiles, layer: u32, texels: &mut [TexelSurface]) -> bool {
     let of_layer = |wanted: u32| tiles.tiles.iter().filter(move |tile| tile.square.layer == wanted);
     let alike = |(a, b): (&MapTile, &MapTile)| MapSquare { layer, ..a.square } == b.square && a.cells == b.cells;
     let same = of_layer(0).count() == of_layer(layer).count() && of_layer(0).zip(of_layer(layer)).all(alike);
     for (from, to) in of_layer(0).zip(of_layer(layer)).filter(|_| same) {
-        let texels = from.first_texel as usize..(from.first_texel + from.texel_count()) as usize;
-        areas.copy_within(texels, to.first_texel as usize);
+        let first = from.first_texel as usize..(from.first_texel + from.texel_count()) as usize;
+        texels.copy_within(first, to.first_texel as usize);
     }
     same
 }
@@ -56,7 +95,13 @@ enum Spread {
 }
 
 /// Adds what lies on a square to the tiles in it.
-fn add(tiles: &MapTiles, index: &HashMap<MapSquare, MapTile>, square: MapSquare, spread: &Spread, areas: &mut [f64]) {
+fn add(
+    tiles: &MapTiles,
+    index: &HashMap<MapSquare, MapTile>,
+    square: MapSquare,
+    (spread, chart): (&Spread, TexelChart),
+    texels: &mut [TexelSurface],
+) {
     let size = tiles.square_size(square.level);
     let origin = DVec2::new(square.x.into(), square.y.into()) * size;
     let is_met = match spread {
@@ -68,7 +113,7 @@ fn add(tiles: &MapTiles, index: &HashMap<MapSquare, MapTile>, square: MapSquare,
     }
     let Some(tile) = index.get(&square) else {
         if square.level < FINEST_LEVEL {
-            square.children().into_iter().for_each(|child| add(tiles, index, child, spread, areas));
+            square.children().into_iter().for_each(|child| add(tiles, index, child, (spread, chart), texels));
         }
         return;
     };
@@ -77,7 +122,8 @@ fn add(tiles: &MapTiles, index: &HashMap<MapSquare, MapTile>, square: MapSquare,
     let mut grid = Grid {
         width: tile.cells[0] as usize + 1,
         last_cell: cells - 1.0,
-        sums: &mut areas[tile.first_texel as usize..(tile.first_texel + tile.texel_count()) as usize],
+        chart,
+        texels: &mut texels[tile.first_texel as usize..(tile.first_texel + tile.texel_count()) as usize],
     };
     match spread {
         Spread::Over(places, density) => {
@@ -143,12 +189,14 @@ fn folded_points([a, b, c]: [DVec2; 3], area: f64) -> Vec<(DVec2, f64)> {
     points
 }
 
-/// The areas of a tile's texels.
+/// The texels of a tile, as a piece of surface is added to them.
 struct Grid<'a> {
     width: usize,
     /// The last cell's lower corner.
     last_cell: DVec2,
-    sums: &'a mut [f64],
+    /// That of the piece.
+    chart: TexelChart,
+    texels: &'a mut [TexelSurface],
 }
 
 impl Grid<'_> {
@@ -185,10 +233,18 @@ impl Grid<'_> {
     /// Adds the moments (1, s, t, st) of an area in a cell's own coordinates to the cell's four texels.
     fn add_moments(&mut self, x: usize, y: usize, density: f64, [one, s, t, st]: [f64; 4]) {
         let first = y * self.width + x;
-        self.sums[first] += density * (one - s - t + st);
-        self.sums[first + 1] += density * (s - st);
-        self.sums[first + self.width] += density * (t - st);
-        self.sums[first + self.width + 1] += density * st;
+        self.add_area(first, density * (one - s - t + st));
+        self.add_area(first + 1, density * (s - st));
+        self.add_area(first + self.width, density * (t - st));
+        self.add_area(first + self.width + 1, density * st);
+    }
+
+    fn add_area(&mut self, texel: usize, area: f64) {
+        let texel = &mut self.texels[texel];
+        texel.area += area;
+        if area > 0.0 {
+            texel.chart = texel.chart.and(self.chart);
+        }
     }
 }
 

@@ -69,6 +69,18 @@ impl MapTile {
     pub fn texel_count(&self) -> u64 {
         u64::from(self.cells[0] + 1) * u64::from(self.cells[1] + 1)
     }
+
+    /// The one of a layer's tiles, in their order, that covers a square of the finest level; none beside the plane.
+    pub(crate) fn at_finest(tiles: &[Self], [x, y]: [u64; 2]) -> Option<&Self> {
+        let layer = tiles.first()?.square.layer;
+        let [x, y] = [u32::try_from(x).ok()?, u32::try_from(y).ok()?];
+        let wanted = MapSquare { layer, level: FINEST_LEVEL, x, y }.order();
+        let after = tiles.partition_point(|tile| tile.square.order() <= wanted);
+        tiles[..after].last().filter(|tile| {
+            let shift = FINEST_LEVEL - tile.square.level;
+            [x >> shift, y >> shift] == [tile.square.x, tile.square.y]
+        })
+    }
 }
 
 impl MapTiles {

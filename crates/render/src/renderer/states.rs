@@ -1,6 +1,6 @@
 //! Render states: how far a render is, kept and gone on with.
 
-use diacaustic_shaders::{CAMERA, PHOTONS, RESOLVE};
+use diacaustic_shaders::{CAMERA, PHOTONS, RESOLVE, SMOOTH};
 
 use super::{OnDevice, Renderer};
 use crate::{
@@ -83,11 +83,12 @@ impl OnDevice {
         fingerprint.say("version", env!("CARGO_PKG_VERSION"));
         fingerprint.say("adapter", format!("{name} ({driver} {driver_info})"));
         fingerprint.say("seed", self.scene.settings.seed);
-        for kernel in [PHOTONS, RESOLVE, CAMERA] {
+        for kernel in [PHOTONS, RESOLVE, SMOOTH, CAMERA] {
             fingerprint.digest(&format!("the kernel {}", kernel.name), kernel.source.as_bytes());
         }
         fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
         fingerprint.extend(&self.buffers.fingerprint);
+        fingerprint.say("map_filter", self.scene.settings.map_filter);
         fingerprint.say("list of features", format!("{:?}", self.features));
         self.photons.add_to(&mut fingerprint);
         self.samples.add_to(&mut fingerprint);

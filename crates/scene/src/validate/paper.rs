@@ -32,6 +32,9 @@ impl Scene {
         at.require(!settings.footprints, "footprints", || {
             "is true, but the profile \"paper\" lays each ray on four texels; set footprints = false".to_owned()
         })?;
+        at.require(!settings.map_filter, "map_filter", || {
+            "is true, but the profile \"paper\" shows energy maps as they are; set map_filter = false".to_owned()
+        })?;
         at.require(settings.max_bounces == 0, "max_bounces", || {
             format!(
                 "is {}, but the profile \"paper\" has no light between diffuse surfaces; set max_bounces = 0",

@@ -46,6 +46,7 @@ impl Report<'_> {
             device_bytes: self.built.device_bytes,
             map_bytes: self.built.map_bytes,
             map_budget: self.built.map_budget,
+            map_filter: self.scene.settings.map_filter,
         }
     }
 

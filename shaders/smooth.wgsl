@@ -1,0 +1,177 @@
+// Irradiance is smoothed where texels differ by no more than the noise of their photons: one step of an edge-avoiding filter "with holes"
+// (Dammertz et al. 2010), whose kernel doubles from step to step. Texels exchange flux in pairs. docs/energy-maps.md, "Smoothing".
+
+import package::film::texels::tile_at;
+import package::film::welds::{between_welds, load_map_texel};
+import package::layout::features::light_group_count;
+import package::layout::map_passes::{texel_irradiance, welded, welds, MapTexel};
+import package::layout::records::{load_map_layer, record_texel};
+import package::layout::scene::NONE;
+import package::layout::smooth_pass::{map_tiles, rough_irradiance, smooth_params};
+
+/// How much two texels' squared difference may exceed the sum of their variances for 1/e of the exchange.
+const TOLERANCE: f32 = 15.0;
+/// How much larger the neighbours of a scrap are than it, on average.
+const SCRAP: f32 = 2.5;
+/// A difference of places, in cells, that is rounding.
+const SAME_PLACE: f32 = 0.01;
+
+/// What a texel, or a place near one, holds.
+struct Neighbour {
+    /// Irradiance and variance of all light, and of the entry that is smoothed.
+    total: vec4<f32>,
+    own: vec4<f32>,
+    /// Area, m²; 0 if it is not of the texel's chart.
+    area: f32,
+}
+
+/// What a texel of some area holds.
+fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
+    let first = (1u + light_group_count) * texel;
+    let total = textureLoad(rough_irradiance, record_texel(first), 0);
+    if light_group_count == 0u {
+        return Neighbour(total, total, area);
+    }
+    return Neighbour(total, textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
+}
+
+/// What a neighbour holds.
+fn texel_neighbour(texel: u32, chart: u32, entry: u32) -> Neighbour {
+    let record = load_map_texel(texel);
+    return held(texel, entry, select(0.0, record.area, record.chart == chart));
+}
+
+/// What a place of the plane beyond the tile holds: a texel, or what lies between texels.
+fn place_neighbour(layer_index: u32, place: vec2<f32>, chart: u32, entry: u32) -> Neighbour {
+    var sum = Neighbour(vec4<f32>(0.0), vec4<f32>(0.0), 0.0);
+    let layer = load_map_layer(layer_index);
+    let at_square = place * vec2<f32>(layer.scale_x, layer.scale_y);
+    let squares = vec2<f32>(f32(layer.squares & 0xffffu), f32(layer.squares >> 16u));
+    if any(at_square < vec2<f32>(0.0)) || any(at_square > squares) {
+        return sum;
+    }
+    let tile = tile_at(layer_index, place);
+    let rounded = round(tile.at);
+    let at = select(tile.at, rounded, abs(tile.at - rounded) < vec2<f32>(SAME_PLACE));
+    let cell = min(floor(at), vec2<f32>(tile.cells) - 1.0);
+    let f = at - cell;
+    for (var corner = 0u; corner < 4u; corner++) {
+        let offset = vec2<u32>(corner & 1u, corner >> 1u);
+        let weights = select(1.0 - f, f, offset == vec2<u32>(1u));
+        let weight = weights.x * weights.y;
+        if weight > 0.0 {
+            let step = vec2<u32>(cell) + offset;
+            let one = texel_neighbour(tile.first_texel + step.y * (tile.cells.x + 1u) + step.x, chart, entry);
+            if one.area <= 0.0 {
+                return Neighbour(vec4<f32>(0.0), vec4<f32>(0.0), 0.0);
+            }
+            sum.total += weight * one.total;
+            sum.own += weight * one.own;
+            sum.area += weight * one.area;
+        }
+    }
+    return sum;
+}
+
+/// What a texel gains from its neighbours.
+struct Exchange {
+    change: vec3<f32>,
+    /// Of what it gains.
+    variance: f32,
+    /// Share that the texel gives away.
+    given: f32,
+    /// Sums over the neighbours there are: of kernel weights, and by these of variances for an area of 1 m².
+    kernel: f32,
+    around: f32,
+    /// The same sum of their areas.
+    area: f32,
+}
+
+/// Adds the exchange of a texel with neighbour k of nine, row by row: as much flux as the other gives this one, for each weighs by the smaller
+/// area of the two.
+fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
+    let difference = other.total.xyz - texel.total.xyz;
+    let noise = max(TOLERANCE * (texel.total.w + other.total.w), 1e-37);
+    let kernel = select(0.0625, 0.125, (k & 1u) == 1u);
+    let bounded = kernel * min(other.area / texel.area, 1.0);
+    let weight = bounded * exp(-dot(difference, difference) / (3.0 * noise));
+    (*exchange).change += weight * (other.own.xyz - texel.own.xyz);
+    (*exchange).variance += weight * weight * other.own.w;
+    (*exchange).given += weight;
+    (*exchange).kernel += kernel;
+    (*exchange).around += kernel * other.own.w * other.area;
+    (*exchange).area += kernel * other.area;
+}
+
+/// A texel's irradiance and variance after a step.
+fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
+    let texel = held(index, entry, record.area);
+    if record.chart == 0u || record.chart == NONE || record.area <= 0.0 {
+        return texel.own;
+    }
+    let tile = map_tiles[record.tile];
+    let columns = tile.columns + 1u;
+    let within = index - tile.first_texel;
+    let row = within / columns;
+    let here = vec2<i32>(vec2<u32>(within - row * columns, row));
+    let last = vec2<i32>(vec2<u32>(tile.columns, tile.rows));
+    var exchange: Exchange;
+    // Neighbours beyond the tile come in a second loop: software adapters pay for both sides of a branch.
+    var beyond = 0u;
+    for (var k = 0u; k < 9u; k++) {
+        let at = here + smooth_params.distance * (vec2<i32>(vec2<u32>(k % 3u, k / 3u)) - 1);
+        if any(at < vec2<i32>(0)) || any(at > last) {
+            beyond |= 1u << k;
+            continue;
+        }
+        let other = texel_neighbour(tile.first_texel + u32(at.y) * columns + u32(at.x), record.chart, entry);
+        if k != 4u && other.area > 0.0 {
+            exchange_with(&exchange, k, texel, other);
+        }
+    }
+    while beyond != 0u {
+        let k = firstTrailingBit(beyond);
+        beyond &= beyond - 1u;
+        let at = here + smooth_params.distance * (vec2<i32>(vec2<u32>(k % 3u, k / 3u)) - 1);
+        let place = vec2<f32>(tile.origin_x, tile.origin_y) + vec2<f32>(at) * vec2<f32>(tile.cell_x, tile.cell_y);
+        let other = place_neighbour(tile.layer, place, record.chart, entry);
+        if other.area > 0.0 {
+            exchange_with(&exchange, k, texel, other);
+        }
+    }
+    if smooth_params.only_variance != 0u {
+        let around = (0.25 * texel.own.w * texel.area + exchange.around) / (0.25 + exchange.kernel);
+        return vec4<f32>(texel.own.xyz, around / texel.area);
+    }
+    // A scrap at a chart's border is noisy and has few neighbours: it takes as much as one with all eight.
+    var boost = 1.0;
+    if exchange.area > SCRAP * texel.area * exchange.kernel {
+        boost = 0.75 / exchange.kernel;
+    }
+    let kept = 1.0 - boost * exchange.given;
+    let variance = kept * kept * texel.own.w + boost * boost * exchange.variance;
+    return vec4<f32>(texel.own.xyz + boost * exchange.change, smooth_params.variance_factor * variance);
+}
+
+@compute @workgroup_size(64)
+fn smooth_maps(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let index = (group.y * smooth_params.groups_x + group.x) * 64u + local;
+    if index >= smooth_params.count {
+        return;
+    }
+    let is_weld = smooth_params.of_welds != 0u;
+    var texel = index;
+    if is_weld {
+        texel = welds[index].owner;
+    }
+    let record = load_map_texel(texel);
+    let entries = 1u + light_group_count;
+    for (var entry = 0u; entry < entries; entry++) {
+        let value = smoothed(texel, record, entry);
+        if is_weld {
+            welded[entries * index + entry] = value;
+        } else {
+            textureStore(texel_irradiance, record_texel(entries * index + entry), between_welds(record.link, entry, entries, value));
+        }
+    }
+}
