@@ -112,7 +112,7 @@ fn noise_goes_and_no_light_leaves_its_chart() {
         let mean = lit.iter().sum::<f64>() / lit.len() as f64;
         let off = lit.iter().filter(|&irradiance| (irradiance - 3.0).abs() > 0.3).count();
         println!("{settings}: {mean} W/m² on the top, {off} of {} places are not even", lit.len());
-        assert!((mean - 3.0).abs() < 0.05, "{settings}: {mean} W/m² on the top");
+        assert!((mean - 3.0).abs() < 0.1, "{settings}: {mean} W/m² on the top");
         assert!(lit.len() > 300 && off < lit.len() / 12, "{settings}: {off} of {} places are not even", lit.len());
     }
 }
