@@ -76,6 +76,8 @@ fn make_table() -> [WavelengthEntry; WAVELENGTH_STEPS + 1] {
     // What the steps in ξ miss is made good, so that every primary, and with them white, has its colour exactly.
     let correction = colors_of_primaries(&table).inverse();
     table.iter_mut().for_each(|entry: &mut WavelengthEntry| entry.weight = correction * entry.weight);
+    // The inverse of the cumulative density ends beside it by some last digits.
+    table[WAVELENGTH_STEPS].nm = LONGEST_WAVELENGTH;
     table
 }
 
