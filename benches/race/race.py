@@ -21,7 +21,7 @@ REPOSITORY = HERE.parent.parent
 PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
 SHARED = REPOSITORY.parent / "shared" / "reference"
 # Samples and photons of a reference, and what makes its layers.
-LONG = ["--samples", "256", "--photons", "60000000", "--set", "render.footprints=false", "--set", "output.layers=true"]
+LONG = ["--samples", "128", "--photons", "20000000", "--set", "render.footprints=false", "--set", "output.layers=true"]
 TARGETS = [0.6, 0.3, 0.2, 0.1, 0.05]
 
 
