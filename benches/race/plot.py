@@ -3,6 +3,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import pyplot
+from matplotlib.ticker import NullFormatter
 
 MARKS = {"diacaustic": "o-", "pov-ray": "s--", "mitsuba": "^:"}
 
@@ -17,6 +18,8 @@ def draw(rows, path):
                 panel.loglog(*zip(*points), MARKS.get(renderer, "x-"), label=renderer)
         panel.set(title=scene, xlabel="wall time, s")
         panel.axhline(0.01, color="0.7", linewidth=0.8)
+        panel.set_xticks([1, 2, 5, 10, 20, 50], ["1", "2", "5", "10", "20", "50"])
+        panel.xaxis.set_minor_formatter(NullFormatter())
         panel.grid(True, which="both", alpha=0.2)
     panels[0][0].set_ylabel("relative squared error of the caustic")
     panels[0][0].legend()
