@@ -13,6 +13,7 @@ use crate::{
     features::Features,
     gpu::{Gpu, Purpose},
     map_plan::{MapPlan, default_texel_width},
+    refine::DARKNESS,
 };
 
 const CACHE: Purpose = Purpose { what: "the irradiance cache", remedy: "set irradiance_cache = false" };
@@ -34,8 +35,6 @@ const ROUNDS: std::ops::RangeInclusive<u32> = 8..=128;
 const ERROR_SHARE: f64 = 0.05;
 /// The part of a place's light that must be in the cache for the place to tell how exact it is.
 const LEAST_LIGHT: f64 = 0.05;
-/// Share of the mean radiance, squared, that is added to a place's own: that of `shaders/errors.wgsl`.
-const DARKNESS: f64 = 0.01;
 
 /// The grids of a scene's maps and, once paths have filled it, their values.
 #[derive(Debug)]
@@ -69,7 +68,7 @@ impl IrradianceCache {
                 cache.grids.push(grid);
             }
         }
-        cache.buffer = gpu.filled(CACHE, &cache.records(&vec![[0.0; 4]; cache.nodes]))?;
+        cache.buffer = gpu.filled(CACHE, &cache.blank_records())?;
         Ok(cache)
     }
 
@@ -90,8 +89,7 @@ impl IrradianceCache {
 
     /// Lets kernels know of no values.
     pub fn forget(&self, gpu: &Gpu) {
-        let records = self.records(&vec![[0.0; 4]; self.nodes]);
-        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&records));
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::cast_slice(&self.blank_records()));
     }
 
     /// Measures bounced light by the paths of `follow`, as many as its error asks for, and lets kernels read it. Returns its error: the mean over the
@@ -121,6 +119,11 @@ impl IrradianceCache {
                 return Ok(error);
             }
         }
+    }
+
+    /// The records without values.
+    fn blank_records(&self) -> Vec<[f32; 4]> {
+        self.records(&vec![[0.0; 4]; self.nodes])
     }
 
     /// The layer's record for each layer, then the nodes.
@@ -179,7 +182,7 @@ impl IrradianceCache {
     /// The mean over what paths saw last of the squared deviation of radiance, by what two halves of all paths differ in, relative to brightness.
     fn error(&self, seen: &[Sighting], [first, second]: [&[Node]; 2]) -> f64 {
         let mean = seen.iter().map(|sighting| f64::from(sighting.radiance)).sum::<f64>() / seen.len().max(1) as f64;
-        let floor = (DARKNESS * mean * mean).max(f64::MIN_POSITIVE);
+        let floor = (f64::from(DARKNESS) * mean * mean).max(f64::MIN_POSITIVE);
         let (mut sum, mut count) = (0.0, 0u32);
         for sighting in seen {
             let Some(around) = self.nodes_at(sighting) else { continue };

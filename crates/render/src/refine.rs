@@ -24,7 +24,7 @@ const PHOTONS_AT_ONCE: u32 = 18;
 const MAP_SHARE: f64 = 0.25;
 const MOST_MAP_SHARE: f64 = 0.5;
 /// Share of the mean radiance, squared, that is added to a pixel's own: that of `shaders/errors.wgsl`.
-const DARKNESS: f32 = 0.01;
+pub(crate) const DARKNESS: f32 = 0.01;
 /// The part of a path's light that the maps must bring for the path to tell how exact they are.
 const LEAST_MAP_LIGHT: f32 = 0.05;
 /// Samples of every pixel before errors are looked at.
