@@ -122,7 +122,7 @@ fn sample_texels(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocat
     path.direction = -vertex.point.n_g;
     // What reflects all light sends 1/π of its irradiance along each direction.
     path.beta = vec3<f32>(path_params.exposure * weight);
-    interact(&path, vertex, place.hit, bake_params.object);
+    interact(&path, vertex, place.hit, load_triangle(place.hit.triangle));
     follow(&path);
     film.pixels[index] += vec4<f32>(path.radiance, weight);
 }

@@ -3,7 +3,7 @@
 
 import package::film::layers::add_to_squares;
 import package::layout::camera_pass::{camera_params, halves, tiles};
-import package::layout::features::{has_halves, notes_sightings};
+import package::layout::features::{has_halves, has_textures, notes_sightings};
 import package::layout::path_pass::{film, path_params, sightings, LAYER_EMISSION};
 import package::layout::records::record_texel;
 import package::path::advance::follow;
@@ -24,6 +24,25 @@ fn filter_offset(u: f32) -> f32 {
     return mix(low, high, at - f32(k));
 }
 
+/// Samples of a pixel that look at the energy maps in four places each.
+const WIDE_SAMPLES: u32 = 8u;
+
+/// A number in the other half of its cell, of so many cells in [0, 1).
+fn in_other_half(u: f32, cells: f32) -> f32 {
+    let half = 0.5 / cells;
+    return select(u - half, u + half, (u32(u / half) & 1u) == 0u);
+}
+
+/// Where else a path looks at the energy maps: samples 2ᵏ to 2ᵏ⁺¹ − 1 of a pixel have a cell of it each, and see the four quarters of that.
+fn spread_over_cell(path: ptr<function, Path>, u: vec2<f32>, offset: vec2<f32>, length: f32) {
+    let splits = firstLeadingBit(max((*path).sample, 1u));
+    let cells = vec2<f32>(f32(1u << ((splits + 1u) / 2u)), f32(1u << (splits / 2u)));
+    let other = vec2<f32>(filter_offset(in_other_half(u.x, cells.x)), filter_offset(in_other_half(u.y, cells.y))) - offset;
+    let scale = 2.0 * other / vec2<f32>(f32(camera_params.width), f32(camera_params.height)) * camera_params.focus_distance / length;
+    (*path).other_right = scale.x * camera_params.half_right;
+    (*path).other_up = -scale.y * camera_params.half_up;
+}
+
 /// The camera ray of this sample of a pixel.
 fn start_path(pixel: vec2<u32>) -> Path {
     let index = pixel.y * camera_params.width + pixel.x;
@@ -38,14 +57,16 @@ fn start_path(pixel: vec2<u32>) -> Path {
     let numbers = sobol_5(sample, seed);
     let u = numbers.first;
     let size = vec2<f32>(f32(camera_params.width), f32(camera_params.height));
-    let at = vec2<f32>(pixel) + 0.5 + vec2<f32>(filter_offset(u.x), filter_offset(u.y));
+    let offset = vec2<f32>(filter_offset(u.x), filter_offset(u.y));
+    let at = vec2<f32>(pixel) + 0.5 + offset;
     let screen = 2.0 * at / size - 1.0;
     let view = path_params.forward + screen.x * camera_params.half_right - screen.y * camera_params.half_up;
     let lens = camera_params.aperture_radius * disc(u.zw);
     let on_lens = lens.x * camera_params.lens_right + lens.y * camera_params.lens_up;
     var path: Path;
     path.origin = path_params.position + on_lens;
-    path.direction = normalize(camera_params.focus_distance * view - on_lens);
+    let toward = camera_params.focus_distance * view - on_lens;
+    path.direction = normalize(toward);
     path.beta = vec3<f32>(path_params.exposure);
     path.media = path_params.media;
     path.fifth_number = numbers.fifth;
@@ -56,6 +77,10 @@ fn start_path(pixel: vec2<u32>) -> Path {
     path.pixel = index;
     path.layer = LAYER_EMISSION;
     path.sighting = no_sighting();
+    // Where surfaces show pictures, the product of light and picture is what counts.
+    if !notes_sightings && !has_textures && sample < WIDE_SAMPLES {
+        spread_over_cell(&path, u.xy, offset, length(toward));
+    }
     return path;
 }
 

@@ -13,7 +13,7 @@ var<workgroup> radiances: array<f32, TILE_PIXELS>;
 var<workgroup> samples: array<u32, TILE_PIXELS>;
 var<workgroup> pixels: array<u32, TILE_PIXELS>;
 
-/// The squared error of a pixel's mean, mean of the channels, relative to the square of its brightness. Means of n₁ and n₂ independent samples differ by
+/// The squared error of a pixel's mean relative to its square, of colors as vectors of three channels. Means of n₁ and n₂ independent samples differ by
 /// σ²(1/n₁ + 1/n₂) in the mean square, and that of all has the variance σ²/(n₁ + n₂).
 fn squared_error(all: vec4<f32>, first: vec4<f32>) -> f32 {
     let later = all - first;
@@ -21,9 +21,9 @@ fn squared_error(all: vec4<f32>, first: vec4<f32>) -> f32 {
         return 1.0;
     }
     let difference = (first.xyz / first.w - later.xyz / later.w) * sqrt(first.w * later.w) / all.w;
-    let brightness = (all.x + all.y + all.z) / (3.0 * all.w);
-    let floor = DARKNESS * error_params.mean_radiance * error_params.mean_radiance;
-    return min(dot(difference, difference) / (3.0 * max(brightness * brightness + floor, 1e-30)), 1.0);
+    let mean = all.xyz / all.w;
+    let floor = 3.0 * DARKNESS * error_params.mean_radiance * error_params.mean_radiance;
+    return min(dot(difference, difference) / max(dot(mean, mean) + floor, 1e-30), 1.0);
 }
 
 @compute @workgroup_size(64)

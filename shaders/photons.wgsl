@@ -3,18 +3,20 @@
 import package::bsdf::base::gloss_reflectance;
 import package::bsdf::dispersion::split_colors;
 import package::bsdf::specular::{adjoint_factor, landing_factor, outer_interface, scatter_specular, Interface};
+import package::deposit::ellipse::{add_ellipse, PlaneAxes};
+import package::deposit::sums::add_around;
 import package::emitter::emission::{emit, Emission};
 import package::emitter::guide::{guide_numbers, GuidedNumbers};
 import package::emitter::sphere::nearest_sphere;
 import package::film::fixed_point::carry;
-import package::film::texels::{footprint, map_layer, map_place, tile_at};
-import package::geometry::differential::{barycentric_change, normal_change, transfer, turn_change, Differential};
-import package::layout::features::{has_dispersion, has_footprints, has_guide, has_squares, paper_refraction, photon_light_kind, PAPER_NONE};
+import package::film::texels::{map_layer, map_place, tile_at};
+import package::geometry::differential::{normal_change, plane_change, transfer, turn_change, Differential};
+import package::layout::features::{has_dispersion, has_footprints, has_guide, paper_refraction, photon_light_kind, PAPER_NONE};
 import package::layout::records::{load_corners, load_triangle};
 import package::geometry::surface::{leave, SurfacePoint};
 import package::geometry::traverse::{trace, Hit};
 import package::layout::photon_pass::{
-    energy_high, energy_low, landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
+    landings, ledger, photon_params, Landing, LEDGER_ABSORBED, LEDGER_ACCOUNTS, LEDGER_CUT_OFF, LEDGER_DEPOSITED, LEDGER_DIRECT,
     LEDGER_DISPERSION, LEDGER_EMITTED, LEDGER_ESCAPED, LEDGER_SHADING_NORMALS, LOST,
 };
 import package::layout::scene::{
@@ -22,7 +24,6 @@ import package::layout::scene::{
     LIGHT_DISTANT, LIGHT_ENVIRONMENT, MATERIAL_THIN_WALLED, Triangle,
 };
 import package::medium::media::{is_dispersive, media_beyond, medium_ior, transmittance};
-import package::paper::deposit::weights_by_equation_2;
 import package::paper::emission::emit_by_equation_1;
 import package::sampling::sobol::{padded_1, padded_2, sobol_5};
 import package::sampling::warp::frame;
@@ -114,139 +115,6 @@ fn turn_differential(
     (*photon).differential.direction_2 = turn_change(d, r.direction_2, n, dn_2, after, eta, transmitted);
 }
 
-/// The most texels from the middle of a footprint to its end, along an axis.
-const LARGEST_REACH: f32 = 12.0;
-/// Cells along a tile that is large enough for footprints.
-const LEAST_CELLS: f32 = 4.0;
-
-/// An elliptic kernel on a tile of a map, texels.
-struct Ellipse {
-    middle: vec2<f32>,
-    /// Unit axis.
-    axis: vec2<f32>,
-    /// Inverse squared radii along the axis and across it.
-    inverse: vec2<f32>,
-}
-
-/// Epanechnikov's kernel, not normalised.
-fn kernel_weight(ellipse: Ellipse, place: vec2<f32>) -> f32 {
-    let v = place - ellipse.middle;
-    let w = vec2<f32>(dot(v, ellipse.axis), v.x * ellipse.axis.y - v.y * ellipse.axis.x);
-    return max(1.0 - dot(w * w, ellipse.inverse), 0.0);
-}
-
-/// A texel's share of the kernel, not normalised: what would fall beyond the tile's nearest borders is folded back, and texels on a border
-/// stand for half a cell. So even light stays even up to the border.
-fn folded_weight(ellipse: Ellipse, texel: vec2<u32>, cells: vec2<f32>) -> f32 {
-    let place = vec2<f32>(texel);
-    let image = select(2.0 * cells - place, -place, ellipse.middle < 0.5 * cells);
-    let cover = select(vec2<f32>(1.0), vec2<f32>(0.5), (place == vec2<f32>(0.0)) | (place == cells));
-    let whole = kernel_weight(ellipse, place) + kernel_weight(ellipse, vec2<f32>(image.x, place.y))
-        + kernel_weight(ellipse, vec2<f32>(place.x, image.y)) + kernel_weight(ellipse, image);
-    return whole * cover.x * cover.y;
-}
-
-/// Adds to the high word of a sum.
-fn add_to_high(word: u32, gained: u32) {
-    if gained != 0u {
-        atomicAdd(&energy_high[word], gained);
-    }
-}
-
-/// Adds units of flux to a texel, and their square.
-fn add_to_texel(texel: u32, units: vec3<i32>) {
-    let first = select(3u, 4u, has_squares) * texel;
-    for (var channel = 0u; channel < 3u; channel++) {
-        let share = units[channel];
-        if share != 0 {
-            add_to_high(first + channel, carry(atomicAdd(&energy_low[first + channel], bitcast<u32>(share)), share));
-        }
-    }
-    if has_squares {
-        // In sixteenths, so that the squares of many large photons fit into 64 bits.
-        let sixteenths = vec3<f32>(units) / 16.0;
-        let square = round(dot(sixteenths, sixteenths) / 3.0);
-        let high = floor(square / 4294967296.0);
-        let low = u32(square - high * 4294967296.0);
-        let before = atomicAdd(&energy_low[first + 3u], low);
-        add_to_high(first + 3u, u32(high) + select(0u, 1u, before + low < before));
-    }
-}
-
-/// Lays flux over the ellipse of the photon's footprint, as far as it lies on the tile; returns false if it is too small, or the map is of several
-/// charts, onto others of which it might reach.
-fn deposit_ellipse(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, front: bool) -> bool {
-    let c = load_corners(hit.triangle);
-    if c.charts > 1u {
-        return false;
-    }
-    let place = tile_at(map_layer(triangle.object, front), map_place(hit));
-    let cells = vec2<f32>(place.cells);
-    let along_1 = place.scale * (c.texel_01.zw - c.texel_01.xy);
-    let along_2 = place.scale * (vec2<f32>(c.texel_x_2, c.texel_y_2) - c.texel_01.xy);
-    let change_1 = barycentric_change(triangle, (*photon).differential.origin_1);
-    let change_2 = barycentric_change(triangle, (*photon).differential.origin_2);
-    let p = change_1.x * along_1 + change_1.y * along_2;
-    let q = change_2.x * along_1 + change_2.y * along_2;
-    // Covariance, texels².
-    let xx = p.x * p.x + q.x * q.x + 1.0 / 12.0;
-    let xy = p.x * p.y + q.x * q.y;
-    let yy = p.y * p.y + q.y * q.y + 1.0 / 12.0;
-    let larger = max(xx, yy);
-    if !(larger < 1e12) || larger < 0.25 || min(cells.x, cells.y) < LEAST_CELLS {
-        return false;
-    }
-    // An Epanechnikov kernel over an ellipse has a sixth of its squared radius as variance. Larger ellipses shrink to the largest reach,
-    // which is half a tile at most, so that no more than one border along each axis is near.
-    let mean = 0.5 * (xx + yy);
-    let half_difference = sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
-    let lambda = vec2<f32>(mean + half_difference, max(mean - half_difference, 1.0 / 12.0));
-    let largest = min(LARGEST_REACH, 0.5 * min(cells.x, cells.y));
-    let squares = 6.0 * min(lambda, vec2<f32>(largest * largest / 6.0));
-    var axis = vec2<f32>(lambda.x - yy, xy);
-    if dot(axis, axis) < 1e-8 * lambda.x * lambda.x {
-        axis = select(vec2<f32>(0.0, 1.0), vec2<f32>(1.0, 0.0), xx >= yy);
-    }
-    axis = normalize(axis);
-    let at = place.at;
-    let ellipse = Ellipse(at, axis, 1.0 / squares);
-    let reach = sqrt(vec2<f32>(
-        squares.x * axis.x * axis.x + squares.y * axis.y * axis.y, squares.x * axis.y * axis.y + squares.y * axis.x * axis.x,
-    ));
-    let low = vec2<u32>(clamp(ceil(at - reach), vec2<f32>(0.0), cells));
-    let high = vec2<u32>(max(clamp(floor(at + reach), vec2<f32>(0.0), cells), vec2<f32>(low)));
-    let width = high.x - low.x + 1u;
-    let texels = width * (high.y - low.y + 1u);
-    var sum = 0.0;
-    // Step by step, for software adapters divide integers lane by lane.
-    var texel = low;
-    for (var k = 0u; k < texels; k++) {
-        sum += folded_weight(ellipse, texel, cells);
-        let ends_row = texel.x == high.x;
-        texel = vec2<u32>(select(texel.x + 1u, low.x, ends_row), texel.y + select(0u, 1u, ends_row));
-    }
-    if sum < 1e-6 {
-        return false;
-    }
-    let total = (*photon).units;
-    var before = vec3<i32>(0);
-    var running = 0.0;
-    texel = low;
-    for (var k = 0u; k < texels; k++) {
-        running += folded_weight(ellipse, texel, cells);
-        var after = vec3<i32>(round(vec3<f32>(total) * (running / sum)));
-        if k + 1u == texels {
-            after = total;
-        }
-        add_to_texel(place.first_texel + texel.y * (place.cells.x + 1u) + texel.x, after - before);
-        before = after;
-        let ends_row = texel.x == high.x;
-        texel = vec2<u32>(select(texel.x + 1u, low.x, ends_row), texel.y + select(0u, 1u, ends_row));
-    }
-    deposits += 1u;
-    return true;
-}
-
 /// The photon at a place in this block.
 fn start_photon(place: u32) -> Photon {
     var index = photon_params.first_photon + place;
@@ -302,31 +170,29 @@ fn take_wavelength(photon: ptr<function, Photon>) {
     set_flux(photon, at_wavelength((*photon).beta, drawn.wavelength) * drawn.weight, LEDGER_DISPERSION);
 }
 
-/// Adds a photon's flux to the four texels around a hit; their integers sum to its units exactly.
-fn deposit(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
-    let place = footprint(hit, object, front);
-    var weights = place.weights;
-    if paper_refraction != PAPER_NONE {
-        weights = weights_by_equation_2(place.weights);
-    }
+/// Lays a photon's flux down on a map's layer: over the ellipse of its footprint, or if that is too small, or the map is of several charts, onto
+/// others of which it might reach, on four texels.
+fn deposit(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, layer: u32) {
+    let place = tile_at(layer, map_place(hit));
     let units = (*photon).units;
-    var rest = units;
-    for (var k = 0u; k < 4u; k++) {
-        var share = rest;
-        if k < 3u {
-            share = vec3<i32>(round(vec3<f32>(units) * weights[k]));
-        }
-        rest -= share;
-        add_to_texel(place.texels[k], share);
-    }
+    accounts[LEDGER_DEPOSITED] += units;
     deposits += 1u;
+    if has_footprints && (*photon).has_footprint {
+        let c = load_corners(hit.triangle);
+        let r = (*photon).differential;
+        let axes = PlaneAxes(plane_change(triangle, c, r.origin_1), plane_change(triangle, c, r.origin_2));
+        if c.charts <= 1u && add_ellipse(place, axes, units) {
+            return;
+        }
+    }
+    add_around(place, units);
 }
 
 /// Notes where a pilot's photon lands.
-fn note_landing(photon: ptr<function, Photon>, hit: Hit, object: u32, front: bool) {
+fn note_landing(photon: ptr<function, Photon>, hit: Hit, layer: u32) {
     let place = map_place(hit);
     let index = (*photon).index;
-    landings[index].layer = map_layer(object, front);
+    landings[index].layer = layer;
     landings[index].x = place.x;
     landings[index].y = place.y;
     landings[index].flux = dot(abs((*photon).beta), vec3<f32>(1.0 / 3.0));
@@ -348,17 +214,12 @@ fn land(photon: ptr<function, Photon>, hit: Hit, triangle: Triangle, point: Surf
             let factor = landing_factor((*photon).direction, point.n_g, point.n_smooth);
             change_flux(photon, vec3<f32>(factor), LEDGER_SHADING_NORMALS);
         }
-        accounts[LEDGER_DEPOSITED] += (*photon).units;
+        let layer = map_layer(triangle.object, point.front);
         if is_pilot() {
-            note_landing(photon, hit, triangle.object, point.front);
+            note_landing(photon, hit, layer);
             return;
         }
-        if has_footprints && (*photon).has_footprint {
-            if deposit_ellipse(photon, hit, triangle, point.front) {
-                return;
-            }
-        }
-        deposit(photon, hit, triangle.object, point.front);
+        deposit(photon, hit, triangle, layer);
     }
 }
 

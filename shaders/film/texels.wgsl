@@ -57,10 +57,6 @@ fn tile_at(layer_index: u32, place: vec2<f32>) -> TilePlace {
     return TilePlace(tile.first_texel, cells, within, squares * scale);
 }
 
-fn footprint(hit: Hit, object: u32, front: bool) -> Footprint {
-    return texels_around(tile_at(map_layer(object, front), map_place(hit)));
-}
-
 /// The texels around a place on a tile.
 fn texels_around(place: TilePlace) -> Footprint {
     let cell = min(floor(place.at), vec2<f32>(place.cells) - 1.0);

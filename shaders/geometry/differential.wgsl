@@ -3,7 +3,7 @@
 import package::geometry::surface::SurfacePoint;
 import package::geometry::traverse::Hit;
 import package::layout::records::load_corners;
-import package::layout::scene::{Triangle, TRIANGLE_SMOOTH};
+import package::layout::scene::{Triangle, TriangleCorners, TRIANGLE_SMOOTH};
 
 /// How a ray changes along two directions of the emission.
 struct Differential {
@@ -27,6 +27,14 @@ fn barycentric_change(triangle: Triangle, dp: vec3<f32>) -> vec2<f32> {
     let p = dot(dp, triangle.edge_1);
     let q = dot(dp, triangle.edge_2);
     return vec2<f32>(c * p - b * q, a * q - b * p) / max(a * c - b * b, 1e-30);
+}
+
+/// How a point of a triangle moves on the plane of its object's map.
+fn plane_change(triangle: Triangle, corners: TriangleCorners, dp: vec3<f32>) -> vec2<f32> {
+    let change = barycentric_change(triangle, dp);
+    let along_1 = corners.texel_01.zw - corners.texel_01.xy;
+    let along_2 = vec2<f32>(corners.texel_x_2, corners.texel_y_2) - corners.texel_01.xy;
+    return change.x * along_1 + change.y * along_2;
 }
 
 /// How the shading normal changes when the point moves along a triangle.

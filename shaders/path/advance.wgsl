@@ -8,7 +8,7 @@ import package::geometry::traverse::{trace, Hit};
 import package::layout::features::{has_data_layers, has_light_layers, light_group_count};
 import package::layout::path_pass::{film, path_params, LAYER_EMISSION};
 import package::layout::records::load_triangle;
-import package::layout::scene::{MATERIAL_DIELECTRIC, NONE};
+import package::layout::scene::{MATERIAL_DIELECTRIC, NONE, Triangle};
 import package::medium::media::transmittance;
 import package::path::end::{meet_sky, meet_sphere};
 import package::path::energy_map::add_map;
@@ -19,11 +19,11 @@ import package::path::irradiance_cache::{cached_irradiance, enter_tail};
 import package::path::state::{pass_caster, Path};
 import package::path::vertex::{vertex_at, Vertex};
 
-/// Lets a path gather the light of a vertex at `hit` of an object, and go on from it.
-fn interact(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
+/// Lets a path gather the light of a vertex at `hit`, and go on from it.
+fn interact(path: ptr<function, Path>, vertex: Vertex, hit: Hit, triangle: Triangle) {
     add_emission(path, vertex, hit.t);
     if vertex.is_receiver {
-        add_map(path, vertex, hit, object);
+        add_map(path, vertex, hit, triangle);
     }
     let gathers = vertex.is_receiver || vertex.material.gloss > 0.0;
     if gathers && path_params.light_count > 0u {
@@ -31,7 +31,7 @@ fn interact(path: ptr<function, Path>, vertex: Vertex, hit: Hit, object: u32) {
     } else if gathers {
         (*path).gathered += 1u;
     }
-    go_on(path, vertex, cached_irradiance(path, vertex, hit, object));
+    go_on(path, vertex, cached_irradiance(path, vertex, hit, triangle.object));
 }
 
 /// Lets a path meet the triangle at `hit`.
@@ -50,7 +50,7 @@ fn meet_surface(path: ptr<function, Path>, hit: Hit) {
     if has_data_layers {
         keep_first_vertex(path, vertex, triangle);
     }
-    interact(path, vertex, hit, triangle.object);
+    interact(path, vertex, hit, triangle);
 }
 
 /// Traces the path's shadow ray, then the ray along which it goes on, and lets it meet what is there.

@@ -17,6 +17,9 @@ const SLOT_VERTEX: u32 = 8192u;
 struct Path {
     origin: vec3<f32>,
     direction: vec3<f32>,
+    /// How the direction changes to the other half of the sample's part of its pixel, right and up; 0 where a path stands for its own direction alone.
+    other_right: vec3<f32>,
+    other_up: vec3<f32>,
     /// Radiance that arrives in the picture for radiance 1 along the ray.
     beta: vec3<f32>,
     /// Radiance gathered, W/(m² sr).

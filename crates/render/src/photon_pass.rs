@@ -101,6 +101,8 @@ pub(crate) struct Photons {
     photons_per_invocation: u32,
     /// Whether a guide moves the emission numbers.
     guided: bool,
+    /// Whether photons have footprints.
+    footprints: bool,
     /// Units of the fixed-point sums in a watt: a power of two, so that scaling is exact.
     pub units_per_watt: f32,
     greatest_weight: f32,
@@ -184,6 +186,7 @@ impl Photons {
             greatest_weight: scene.greatest_weight,
             photons_per_invocation: loop_limit.photons_per_invocation(scene.settings),
             guided,
+            footprints: scene.settings.footprints,
             units_per_watt,
             outputs_groups: Vec::new(),
             params,
@@ -274,6 +277,7 @@ impl Photons {
         fingerprint.digest("how photons are emitted", &params);
         let guides: Vec<_> = self.lights.iter().flat_map(|light| light.guide.records()).collect();
         fingerprint.digest("how photons are guided", &guides);
+        fingerprint.say("footprints", self.footprints);
     }
 
     /// Submits photons `range`, which take turns over the emitting lights.

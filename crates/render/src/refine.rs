@@ -23,6 +23,9 @@ const PHOTONS_AT_ONCE: u32 = 18;
 /// The part of the squared target error that the maps may make up, and where the scene states its samples.
 const MAP_SHARE: f64 = 0.25;
 const MOST_MAP_SHARE: f64 = 0.5;
+/// The part that they are brought down to while photons are few beside the samples that every pixel gets: photons for each of those samples.
+const CHEAP_MAP_SHARE: f64 = 0.05;
+const CHEAP_PHOTONS: f64 = 0.25;
 /// Share of the mean radiance, squared, that is added to a pixel's own: that of `shaders/errors.wgsl`.
 pub(crate) const DARKNESS: f32 = 0.01;
 /// The part of a path's light that the maps must bring for the path to tell how exact they are.
@@ -111,6 +114,8 @@ pub(crate) struct Course {
     /// Tiles that need more samples, and how many each before the next estimate.
     listed: Vec<(u32, u32)>,
     tile_count: usize,
+    /// Photons that cost little beside the picture's first samples.
+    cheap: u64,
 }
 
 impl Course {
@@ -132,6 +137,7 @@ impl Course {
             sampled: 0,
             listed: Vec::new(),
             tile_count: 0,
+            cheap: cheap_photons(settings),
         }
     }
 
@@ -250,7 +256,11 @@ impl Course {
         let scale = *before as f64 / (now - before) as f64;
         self.map_error = scale * look.relative_change(last);
         self.last_look = Some((now, of_maps));
-        let share = if self.samples.is_some() { MOST_MAP_SHARE } else { MAP_SHARE };
+        let share = match self.samples {
+            _ if now < self.cheap => CHEAP_MAP_SHARE,
+            Some(_) => MOST_MAP_SHARE,
+            None => MAP_SHARE,
+        };
         let allowed = share * self.target.powi(2);
         if self.map_error <= allowed || now >= at_least(self.supply.turns, MOST_PHOTONS) {
             self.stage = Stage::Samples;
@@ -292,7 +302,7 @@ impl Look<'_> {
         self.sightings[path].radiance + self.of_maps[path].element_sum() / 3.0
     }
 
-    /// The mean square of what the maps brought before and bring now, mean of the channels, relative to the brightness and at most 1 for each path; 0 without paths. Only
+    /// The mean square of what the maps brought before and bring now, relative to the radiance, of colours as vectors, and at most 1 for each path; 0 without paths. Only
     /// those count to which the maps bring a part that is worth looking at; what is dark beside these paths' mean counts as if it were
     /// brighter.
     fn relative_change(&self, before: &[Vec3]) -> f64 {
@@ -305,10 +315,19 @@ impl Look<'_> {
         let floor = (DARKNESS * mean * mean).max(f32::MIN_POSITIVE);
         let relative = |&path: &usize| {
             let change = (before[path] - self.of_maps[path]).length_squared();
-            f64::from((change / (3.0 * (self.brightness(path).powi(2) + floor))).min(1.0))
+            // What the path saw beside the maps is known without its colour.
+            let radiance = self.of_maps[path] + self.sightings[path].radiance;
+            f64::from((change / (radiance.length_squared() + 3.0 * floor)).min(1.0))
         };
         lit.iter().map(relative).sum::<f64>() / f64::from(count)
     }
+}
+
+/// Photons that cost little beside the samples that every pixel gets in any case.
+fn cheap_photons(settings: &RenderSettings) -> u64 {
+    let pixels = f64::from(settings.width) * f64::from(settings.height);
+    let samples = settings.samples.map_or(FIRST_SAMPLES, |samples| samples.min(MOST_SAMPLES));
+    (CHEAP_PHOTONS * pixels * f64::from(samples)) as u64
 }
 
 /// At least 2^`bits` photons, of which each light has its turns.
