@@ -174,6 +174,7 @@ mod statistics;
 mod tangent_records;
 mod texture_records;
 mod tile_choice;
+mod variance;
 mod vertex_color_records;
 
 pub use aim::Emission;
