@@ -77,10 +77,9 @@ fn describe_needs(scene: &Scene, built: &SceneReport) -> Vec<String> {
     let is_open = built.maps.iter().any(|map| scene.objects[map.object].map_size.or(scene.settings.map_size).is_none());
     let most = if is_open { " at most" } else { "" };
     let bytes = Metric(built.device_bytes as f64);
-    [format!("on a device: {bytes}B{most}, {} nodes of a hierarchy, {} energy maps", built.bvh_nodes, built.maps.len())]
-        .into_iter()
-        .chain(maps)
-        .collect()
+    let plural = if built.maps.len() == 1 { "" } else { "s" };
+    let counts = format!("{} nodes of a hierarchy, {} energy map{plural}", built.bvh_nodes, built.maps.len());
+    [format!("on a device: {bytes}B{most}, {counts}")].into_iter().chain(maps).collect()
 }
 
 fn describe_adapters() -> Vec<String> {
