@@ -65,7 +65,7 @@
 //! const SCENE: &str = r#"
 //!     camera = { position = [0, 1.5, 2.5], look_at = [0, 0.3, 0], vertical_fov = 40 }
 //!     render = { width = 320, height = 240, target_error = 0.2 }
-//!     output = { exposure = 4 }
+//!     output = { exposure = 1.5 } # stops
 //!     materials.glass = { type = "dielectric", ior = 1.5 }
 //!     materials.plaster = { type = "diffuse", albedo = 0.8 }
 //!     lights = [{ type = "sphere", center = [0.5, 2.5, 0.3], radius = 0.05, flux = 35 }]
