@@ -2,6 +2,8 @@
 //!
 //! The kernels live beside this crate's manifest, one file per pass, and import the modules in the folders there. The build
 //! script links and validates them; [`KERNELS`] holds the results.
+//!
+//! A part of the crate `diacaustic`, which changes it as it needs; use that.
 
 mod layout;
 

@@ -6,7 +6,7 @@ use diacaustic::LayerValues;
 use diacaustic_scene::{SceneOptions, parse_scene_with};
 use diacaustic_tests::{emit, photons_of, samples_of};
 
-/// A ball that turns far from the part of the floor that is looked at; the lamp is large, so that its light is noisy.
+/// A ball that turns far from the part of the floor that is looked at; the lamp is large and partly hidden, so that its light is noisy.
 const SCENE: &str = r#"
     camera = { position = [0, 2, 0.01], look_at = [0, 0, 0], vertical_fov = 40 }
     render = { width = 32, height = 32, samples = 16, photons = 20_000, max_bounces = 0, guiding = false }
@@ -17,6 +17,7 @@ const SCENE: &str = r#"
     objects = [
         { name = "ball", sphere = { center = [0, 0, 0], radius = 0.2, subdivisions = 2 }, material = "glass", translate = [-1.8, 0.3, 0] },
         { rectangle = { center = [0, 0, 0], edge_u = [8, 0, 0], edge_v = [0, 0, -8] }, material = "floor", map_size = 64 },
+        { rectangle = { center = [0.9, 1.2, 0], edge_u = [0.7, 0, 0], edge_v = [0, 0, -0.7] }, material = "floor", map_size = 8 },
     ]
     [[animation.tracks]]
     key = "objects.ball.rotate"
@@ -65,7 +66,6 @@ fn a_still_floor_stays_the_same_with_a_fixed_seed() {
 fn seeds_of_each_frame_vary_by_the_noise_that_is_stated() {
     let text = SCENE.replace("[[animation.tracks]]", "[animation]\nseed = \"per_frame\"\n[[animation.tracks]]");
     let (over_time, stated) = variances(&frames(&text));
-    // Samples of a pixel are spread more evenly than independent ones, whose variance is stated.
     let ratio = over_time / stated;
-    assert!((0.02..1.1).contains(&ratio), "{over_time} over time against {stated} stated");
+    assert!((0.3..1.2).contains(&ratio), "{over_time} over time against {stated} stated");
 }

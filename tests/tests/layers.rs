@@ -275,29 +275,47 @@ fn bouncing() -> Scene {
     ))
 }
 
-#[test]
-fn variance_is_that_of_the_samples() {
-    let scene = bouncing();
-    let count = 16;
-    let mut renderer = emit(&scene, 0);
-    let (mut before, mut squares) = (vec![DVec3::ZERO; 96], vec![DVec3::ZERO; 96]);
-    for _ in 0..count {
-        renderer.add_samples(1).unwrap();
-        let film = renderer.film().unwrap();
-        for (pixel, mean) in picture(&film).into_iter().enumerate() {
-            let sum = mean.as_dvec3() * f64::from(film.samples);
-            squares[pixel] += (sum - before[pixel]).powf(2.0);
-            before[pixel] = sum;
-        }
-    }
-    let rendered = Rendered { film: renderer.film().unwrap(), layers: renderer.layers().unwrap() };
-    let n = f64::from(count);
-    let expected = before.iter().zip(&squares).map(|(sum, squares)| (squares - sum * sum / n) / (n * (n - 1.0)));
-    assert_close(&rendered.vectors("variance"), &expected.map(|v| v.as_vec3()).collect::<Vec<_>>(), 1e-3, "variance");
+/// The variance of a picture's pixels as docs/layers.md defines it, of the sums of their first, second … samples.
+fn expected_variance(sums: &[Vec<DVec3>], width: usize) -> Vec<DVec3> {
+    let n = sums.len();
+    let first = 1 << (n - 1).ilog2();
+    let variance = |pixel: usize| {
+        let mean = sums[n - 1][pixel] / n as f64;
+        let samples = (0..n).map(|k| sums[k][pixel] - if k > 0 { sums[k - 1][pixel] } else { DVec3::ZERO });
+        let of_samples = samples.map(|sample| (sample - mean).powf(2.0)).sum::<DVec3>() / (n * (n - 1)) as f64;
+        let late = (sums[n - 1][pixel] - sums[first - 1][pixel]) / (n - first) as f64;
+        let difference = sums[first - 1][pixel] / first as f64 - late;
+        (of_samples, difference.powf(2.0) * (first * (n - first)) as f64 / (n * n) as f64)
+    };
+    let both: Vec<_> = (0..sums[0].len()).map(variance).collect();
+    let far = |a: usize, b: usize| (a % width).abs_diff(b % width).max((a / width).abs_diff(b / width));
+    let scaled = |pixel: usize| {
+        let around = (0..both.len()).filter(|&other| far(pixel, other) <= 4).map(|other| both[other]);
+        let (samples, halves) = around.fold((0.0, 0.0), |(s, h), (a, b)| (s + a.element_sum(), h + b.element_sum()));
+        both[pixel].0 * (halves / samples)
+    };
+    (0..both.len()).map(scaled).collect()
 }
 
 #[test]
-fn the_spread_between_seeds_stays_below_the_variance() {
+fn variance_is_that_of_the_samples_scaled_by_their_halves() {
+    let scene = bouncing();
+    let mut renderer = emit(&scene, 0);
+    let mut sums = Vec::new();
+    for count in 1..=16 {
+        renderer.add_samples(1).unwrap();
+        let film = renderer.film().unwrap();
+        sums.push(picture(&film).into_iter().map(|mean| mean.as_dvec3() * f64::from(count)).collect());
+        if [2, 7, 8, 9, 16].contains(&count) {
+            let rendered = Rendered { film, layers: renderer.layers().unwrap() };
+            let expected: Vec<_> = expected_variance(&sums, 12).into_iter().map(DVec3::as_vec3).collect();
+            assert_close(&rendered.vectors("variance"), &expected, 1e-3, &format!("variance of {count} samples"));
+        }
+    }
+}
+
+#[test]
+fn seeds_spread_by_the_variance() {
     const SEEDS: u32 = 24;
     let (mut sum, mut squares, mut stated) = (vec![DVec3::ZERO; 96], vec![DVec3::ZERO; 96], 0.0);
     for seed in 0..SEEDS {
@@ -312,9 +330,8 @@ fn the_spread_between_seeds_stays_below_the_variance() {
     }
     let n = f64::from(SEEDS);
     let spread: f64 = sum.iter().zip(&squares).map(|(s, q)| (q.y - s.y * s.y / n) / (n - 1.0)).sum();
-    // Independent samples would spread as stated; a pixel's low-discrepancy ones spread less.
     let ratio = spread / (stated / n);
-    assert!((0.15..1.1).contains(&ratio), "spread between seeds over the variance stated: {ratio}");
+    assert!((0.4..1.2).contains(&ratio), "spread between seeds over the variance stated: {ratio}");
 }
 
 #[test]

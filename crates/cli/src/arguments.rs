@@ -61,6 +61,18 @@ Examples:
   diacaustic experiment assets/experiments/paper.toml --set render.samples=4 --output quick
       writes a quick look at it to quick/index.html";
 
+const COMPLETIONS_EXAMPLES: &str = "\
+Examples:
+  source <(diacaustic completions bash)
+      completes the command line in this shell; in ~/.bashrc, in every one
+  diacaustic completions fish > ~/.config/fish/completions/diacaustic.fish
+      the same for fish";
+
+const MAN_EXAMPLES: &str = "\
+Examples:
+  diacaustic man ~/.local/share/man/man1
+      writes the pages; man diacaustic and man diacaustic-bake then show them";
+
 /// Renders glass and the caustics that it casts.
 ///
 /// Reads a scene, traces photons from its lights through glass and mirrors into energy maps, renders the picture on the GPU and
@@ -82,8 +94,10 @@ pub enum Command {
     #[command(after_help = EXPERIMENT_EXAMPLES)]
     Experiment(ExperimentArguments),
     /// Print what a shell needs to complete the command line
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
     Completions(CompletionsArguments),
     /// Write the manual's pages
+    #[command(after_help = MAN_EXAMPLES)]
     Man(ManArguments),
 }
 
@@ -171,5 +185,14 @@ mod tests {
         let help = parse("--help").unwrap_err();
         assert_eq!((help.exit_code(), help.use_stderr()), (0, false));
         assert!(help.render().to_string().contains("diacaustic teapot.toml --time-limit 60"));
+    }
+
+    #[test]
+    fn every_command_has_examples() {
+        for command in Command::interface().get_subcommands_mut() {
+            let (name, help) = (command.get_name().to_owned(), command.render_long_help().to_string());
+            let examples = help.split("Examples:").nth(1).unwrap_or_default();
+            assert!(examples.contains("  diacaustic ") || examples.contains("(diacaustic "), "{name}: {help}");
+        }
     }
 }

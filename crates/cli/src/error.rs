@@ -84,6 +84,9 @@ pub enum Error {
     /// The system does not say when the program is asked to end.
     #[error("signals cannot be watched for: {0}")]
     Signals(#[source] std::io::Error),
+    /// The standard output takes nothing.
+    #[error("the standard output cannot be written: {0}")]
+    Print(#[source] std::io::Error),
     /// The manual cannot be written.
     #[error("{}: the manual cannot be written: {cause}", folder.display())]
     Manual {
@@ -110,7 +113,12 @@ impl Error {
             Self::Render(Render::Scene(_) | Render::Surface(_) | Render::TooManyPhotons { .. }) => 2,
             Self::Output(diacaustic_output::Error::UnknownEnding(_)) => 2,
             Self::Experiment(error) => error.exit_status(),
-            Self::Render(_) | Self::Device(_) | Self::Output(_) | Self::Signals(_) | Self::Manual { .. } => 1,
+            Self::Render(_)
+            | Self::Device(_)
+            | Self::Output(_)
+            | Self::Signals(_)
+            | Self::Print(_)
+            | Self::Manual { .. } => 1,
         }
     }
 }

@@ -4,34 +4,45 @@ use std::{
     io,
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicI32, Ordering},
     },
+    thread,
+    time::{Duration, Instant},
 };
 
 use signal_hook::{
     consts::{SIGINT, SIGTERM},
-    flag,
+    iterator::Signals,
+    low_level,
 };
 
-/// Whether Ctrl-C was pressed, or the program was asked to end in another way. The first such signal lets the render stop and write what there
+/// What comes so soon after the first signal is the same request: `timeout`, for one, sends its signal to the program and then to its group.
+const SAME_REQUEST: Duration = Duration::from_millis(200);
+
+/// Whether Ctrl-C was pressed, or the program was asked to end in another way. The first such request lets the render stop and write what there
 /// is; the second ends the program at once.
 #[derive(Clone, Debug)]
 pub(crate) struct Interruption {
-    signal: Arc<AtomicUsize>,
+    signal: Arc<AtomicI32>,
 }
 
 impl Interruption {
-    /// Watches for signals from now on.
+    /// Watches for signals from now on, on a thread of its own.
     pub fn watch() -> io::Result<Self> {
-        let signal = Arc::new(AtomicUsize::new(0));
-        let is_second = Arc::new(AtomicBool::new(false));
-        for number in [SIGINT, SIGTERM] {
-            // In this order, for the first one must not find the flag set.
-            flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&is_second))?;
-            flag::register(number, Arc::clone(&is_second))?;
-            flag::register_usize(number, Arc::clone(&signal), number as usize)?;
-        }
-        Ok(Self { signal })
+        let mut signals = Signals::new([SIGINT, SIGTERM])?;
+        let watched = Self { signal: Arc::new(AtomicI32::new(0)) };
+        let signal = Arc::clone(&watched.signal);
+        let watch = move || {
+            let mut first = None;
+            for number in signals.forever() {
+                if first.get_or_insert_with(Instant::now).elapsed() > SAME_REQUEST {
+                    low_level::exit(128 + number);
+                }
+                signal.store(number, Ordering::SeqCst);
+            }
+        };
+        thread::Builder::new().name("signals".to_owned()).spawn(watch)?;
+        Ok(watched)
     }
 
     /// The number of the signal that came, if one did.

@@ -30,23 +30,20 @@ pub use session::SessionArguments;
 /// The exit status is 0 when everything is written, 2 when the arguments or the scene are wrong, and 1 when the device or
 /// a file fails; 130 and 143 when Ctrl-C or a request to terminate ended it, after what there was is written. Blocks until then.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let command = match Command::parse(arguments) {
-        Ok(command) => command,
-        Err(message) => return show_usage(&message),
-    };
-    let done = match command {
+    let run = |command| match command {
         Command::Render(arguments) => commands::render::run(&arguments),
         Command::Bake(arguments) => commands::bake::run(&arguments),
         Command::Inspect(arguments) => commands::inspect::run(&arguments),
-        Command::Completions(arguments) => {
-            commands::completions::run(&arguments);
-            Ok(())
-        }
+        Command::Completions(arguments) => commands::completions::run(&arguments),
         Command::Man(arguments) => commands::completions::write_manual(&arguments),
         Command::Experiment(arguments) => commands::experiment::run(&arguments),
     };
+    let done = match Command::parse(arguments) {
+        Ok(command) => run(command).map(|()| ExitCode::SUCCESS),
+        Err(message) => show_usage(&message),
+    };
     match done {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(status) => status,
         Err(error) => {
             show_error(&error);
             ExitCode::from(error.exit_status())
@@ -54,15 +51,24 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// Shows what the argument parser has to say: help or the version, or what is wrong with the arguments.
-fn show_usage(message: &clap::Error) -> ExitCode {
-    // Nobody is left to hear of a closed pipe, here and below.
-    let _ = if message.use_stderr() {
-        write!(io::stderr(), "diacaustic: {}", message.render())
+/// Shows what the argument parser has to say: help or the version, or what is wrong with the arguments. Returns the exit status.
+fn show_usage(message: &clap::Error) -> Result<ExitCode, Error> {
+    if message.use_stderr() {
+        // Nobody is left to hear of a closed pipe, here and below.
+        let _ = write!(io::stderr(), "diacaustic: {}", message.render());
     } else {
-        write!(io::stdout(), "{}", message.render())
-    };
-    ExitCode::from(message.exit_code() as u8)
+        print(message.render().to_string().as_bytes())?;
+    }
+    Ok(ExitCode::from(message.exit_code() as u8))
+}
+
+/// Writes text on the standard output. A closed pipe is no failure: its reader has seen enough.
+pub(crate) fn print(text: &[u8]) -> Result<(), Error> {
+    let mut output = io::stdout().lock();
+    match output.write_all(text).and_then(|()| output.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Print(error)),
+        _ => Ok(()),
+    }
 }
 
 /// One line for the error and one for each that caused it.

@@ -23,7 +23,7 @@ pub struct SceneArguments {
     pub overrides: Vec<Override>,
 
     /// Seed of every random number, in place of the scene's
-    #[arg(long, value_name = "N", value_parser = parse_seed)]
+    #[arg(long, value_name = "N", value_parser = parse_seed, allow_negative_numbers = true)]
     pub seed: Option<u32>,
 
     /// Lay a matt floor under a glTF file's scene, which catches its caustics

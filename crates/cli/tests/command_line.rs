@@ -1,6 +1,10 @@
 //! Runs the real binary: what it writes, what it says, and the exit status it leaves.
 
-use std::{fs, path::PathBuf, process::Command};
+use std::{
+    fs,
+    path::PathBuf,
+    process::{Command, Stdio},
+};
 
 use diacaustic_tests::{Layers, read_exr};
 use serde_json::Value;
@@ -349,6 +353,21 @@ fn shells_and_manuals_know_every_flag() {
 }
 
 #[test]
+#[cfg(target_os = "linux")]
+fn what_the_standard_output_does_not_take_exits_with_1() {
+    let workplace = Workplace::new(BALL);
+    for arguments in [&["inspect", "scene.toml"][..], &["completions", "bash"], &["--help"]] {
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let output =
+            workplace.command(arguments).stdout(full).stderr(Stdio::piped()).spawn().unwrap().wait_with_output();
+        let output = output.unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        Outcome { status: output.status.code(), stdout: String::new(), stderr }
+            .assert_refused(1, &["the standard output cannot be written: No space left"]);
+    }
+}
+
+#[test]
 fn quiet_prints_nothing_but_errors() {
     let workplace = Workplace::new(&BALL.replace("dielectric\", ior = 1.5", "diffuse\", albedo = 0.5"));
     assert_eq!(workplace.render(&["--quiet"]).stderr, "");
@@ -379,13 +398,13 @@ fn wrong_scenes_exit_with_2_and_name_file_and_key() {
     }
     let not_text = Workplace::new(BALL);
     fs::write(not_text.path("scene.toml"), [0xff, 0xfe, 0x00]).unwrap();
-    not_text.run(&["scene.toml"]).assert_refused(2, &["scene.toml", "cannot be read"]);
+    not_text.run(&["scene.toml"]).assert_refused(2, &["scene.toml", "cannot be read", "no UTF-8 text"]);
 }
 
 #[test]
 fn wrong_arguments_exit_with_2_and_name_what_is_wrong() {
     let workplace = Workplace::new(BALL);
-    let cases: [(&[&str], &[&str]); 12] = [
+    let cases: [(&[&str], &[&str]); 15] = [
         (&[], &["<SCENE>"]),
         (&["render"], &["<SCENE>"]),
         (&["inspect", "missing.toml"], &["missing.toml", "cannot be read"]),
@@ -396,6 +415,9 @@ fn wrong_arguments_exit_with_2_and_name_what_is_wrong() {
         (&["scene.toml", "--photon", "9"], &["--photon", "--photons"]),
         (&["scene.toml", "--samples", "0"], &["--samples", "from 1 to"]),
         (&["scene.toml", "--time-limit", "soon"], &["--time-limit", "number of seconds"]),
+        (&["scene.toml", "--time-limit", "-1"], &["--time-limit", "number of seconds"]),
+        (&["scene.toml", "--seed", "-1"], &["--seed", "whole number from 0"]),
+        (&["bake", "scene.toml", "--size", "-1"], &["--size", "whole number from 2"]),
         (&["scene.toml", "--output", "a.jpg"], &["a.jpg", ".exr or .png"]),
         (&["scene.toml", "--output", "a.exr", "--stats", "a.exr"], &["a.exr", "named twice"]),
     ];

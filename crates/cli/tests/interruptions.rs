@@ -179,6 +179,19 @@ fn ctrl_c_writes_what_there_is_and_exits_with_130() {
 }
 
 #[test]
+fn a_signal_that_comes_twice_at_once_is_one_request() {
+    let workplace = Workplace::new();
+    let mut child =
+        workplace.start(&["--photons", "4_000_000_000", "-o", "a.exr", "--checkpoint", "a.state", "--every", "1ms"]);
+    wait_for(&workplace.path("a.state"));
+    // As `timeout` sends it.
+    let id = child.id();
+    assert!(Command::new("sh").args(["-c", &format!("kill -TERM {id}; kill -TERM {id}")]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    assert!(workplace.path("a.exr").exists(), "nothing is written");
+}
+
+#[test]
 fn the_picture_comes_while_it_is_rendered_and_stays_the_same() {
     let workplace = Workplace::new();
     let mut child = workplace.start(&["--photons", "4_000_000_000", "-o", "a.png"]);

@@ -2,7 +2,7 @@
 
 use std::{
     collections::BTreeMap,
-    fs,
+    fs, io,
     path::{Path, PathBuf},
 };
 
@@ -292,7 +292,9 @@ impl Experiment {
     /// # Errors
     /// If the file cannot be read or makes no sense.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
+        let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is no UTF-8 text, as experiment files are");
+        let text = fs::read(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
+        let text = text.map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
         Self::parse(&text, path)
     }
 

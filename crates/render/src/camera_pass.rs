@@ -10,11 +10,12 @@ use crate::{
     fingerprint::Fingerprint,
     gpu::{Binding, Gpu, Purpose, wide},
     irradiance_cache::IrradianceCache,
-    layers::LayerSums,
+    layers::{LayerSums, has_variance},
     lights::{Lights, media_keys, medium_index},
     map_sums::EnergyMaps,
     random::combine,
     sightings::SIGHTINGS,
+    variance::SampleSums,
 };
 
 /// The bindings of `shaders/layout/path_pass.wgsl` and `camera_pass.wgsl`.
@@ -29,8 +30,10 @@ pub(crate) const PATH_OUTPUTS: [Binding; 7] = [
     Binding::Read,
 ];
 const FILM: Purpose = Purpose { what: "the picture's pixels", remedy: "lower width or height" };
-const HALVES: Purpose =
-    Purpose { what: "the first samples of the picture's pixels", remedy: "lower width or height, or state samples" };
+const HALVES: Purpose = Purpose {
+    what: "the first samples of the picture's pixels",
+    remedy: "lower width or height, or state samples and write no layer \"variance\"",
+};
 const TILES: Purpose = Purpose { what: "the list of tiles", remedy: "lower width or height" };
 /// The stream of the camera pass's seeds.
 const SEED_STREAM: u32 = 2;
@@ -90,7 +93,7 @@ pub(crate) struct Samples {
     path_params: wgpu::Buffer,
     /// Four words of counters, then the pixels.
     pub film: wgpu::Buffer,
-    /// For each pixel the sum of its first samples; an entry without use where the scene states how many samples there are.
+    /// For each pixel the sum of its first samples; an entry without use where neither the error nor the variance is asked for.
     pub halves: wgpu::Buffer,
     layers: LayerSums,
     params_group: wgpu::BindGroup,
@@ -229,8 +232,10 @@ impl Samples {
 
     /// Reads the layers of the scene's picture. Blocks.
     pub fn read_layers(&self, gpu: &Gpu, scene: &Scene) -> Result<Vec<LayerImage>, Error> {
-        let counts = self.sums(gpu)?.into_iter().map(|[_, _, _, count]| count as u32).collect();
-        self.layers.read(gpu, scene, counts)
+        let sums = self.sums(gpu)?;
+        let halves =
+            if has_variance(&scene.output.layers) { gpu.read(&self.halves, 0..sums.len() as u64)? } else { Vec::new() };
+        self.layers.read(gpu, scene, &SampleSums { width: self.camera.width as usize, all: sums, halves })
     }
 
     /// For each pixel the sum of its samples and their number. Blocks.

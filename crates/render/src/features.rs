@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::{
     Error,
     gpu::Gpu,
-    layers::{has_data_layers, has_light_layers, kept_group_count, kept_groups},
+    layers::{has_data_layers, has_light_layers, has_variance, kept_group_count, kept_groups},
     lights::kinds_of_light,
 };
 
@@ -90,7 +90,7 @@ impl Features {
             light_layers: has_light_layers(&scene.output.layers),
             data_layers: has_data_layers(&scene.output.layers),
             light_groups: kept_group_count(&kept_groups(scene)) as u32,
-            halves: scene.settings.samples.is_none(),
+            halves: scene.settings.samples.is_none() || has_variance(&scene.output.layers),
         }
     }
 

@@ -6,6 +6,7 @@ use diacaustic_shaders::{DataLayers, light_layer};
 use crate::{
     Error,
     gpu::{Gpu, Purpose},
+    variance::SampleSums,
 };
 
 const LIGHT_LAYERS: Purpose =
@@ -58,6 +59,11 @@ pub(crate) fn has_data_layers(layers: &[Layer]) -> bool {
     layers.iter().any(|&layer| !matches!(layer, Layer::LightGroups | Layer::Samples) && light_sum(layer).is_none())
 }
 
+/// Whether it is told how much pixels vary.
+pub(crate) fn has_variance(layers: &[Layer]) -> bool {
+    layers.contains(&Layer::Variance)
+}
+
 /// The light groups that a scene's layers keep apart; a single one where they keep none.
 pub(crate) fn kept_groups(scene: &Scene) -> LightGroups {
     let groups = scene.light_groups();
@@ -107,11 +113,12 @@ impl LayerSums {
         })
     }
 
-    /// Reads the layers that a scene asks for, in the order of [`Layer::ALL`]; `counts` are the samples of each pixel. Blocks.
-    pub fn read(&self, gpu: &Gpu, scene: &Scene, counts: Vec<u32>) -> Result<Vec<LayerImage>, Error> {
+    /// Reads the layers that a scene asks for, in the order of [`Layer::ALL`]. Blocks.
+    pub fn read(&self, gpu: &Gpu, scene: &Scene, samples: &SampleSums) -> Result<Vec<LayerImage>, Error> {
         let wanted = &scene.output.layers;
-        let pixels = counts.len() as u64;
-        let mut sums = ReadSums { light: Vec::new(), data: Vec::new(), groups: Vec::new(), counts };
+        let pixels = samples.all.len() as u64;
+        let counts = samples.counts().collect();
+        let mut sums = ReadSums { light: Vec::new(), data: Vec::new(), groups: Vec::new(), counts, samples };
         if has_light_layers(wanted) {
             sums.light = gpu.read(&self.light, 0..pixels * u64::from(light_layer::COUNT))?;
         }
@@ -132,7 +139,7 @@ impl LayerSums {
     }
 
     /// The light and the caustic of each group, and the light without group.
-    fn group_images(&self, sums: &ReadSums) -> Vec<LayerImage> {
+    fn group_images(&self, sums: &ReadSums<'_>) -> Vec<LayerImage> {
         let names = |kind: &'static str| self.group_names.iter().map(move |name| format!("{kind}_{name}"));
         let names = names("light").chain(names("caustic")).chain([format!("light_{BACKGROUND_GROUP}")]);
         let stride = group_sums(self.group_names.len()) as usize;
@@ -143,15 +150,16 @@ impl LayerSums {
 }
 
 /// The sums of layers, read from the device.
-struct ReadSums {
+struct ReadSums<'s> {
     light: Vec<[f32; 4]>,
     data: Vec<DataLayers>,
     groups: Vec<[f32; 4]>,
     /// Samples of each pixel.
     counts: Vec<u32>,
+    samples: &'s SampleSums,
 }
 
-impl ReadSums {
+impl ReadSums<'_> {
     fn channels(&self, layer: Layer, scene: &Scene) -> Vec<LayerChannel> {
         let (objects, materials) = (scene.objects.len(), scene.materials.len());
         match layer {
@@ -176,8 +184,8 @@ impl ReadSums {
             Layer::MaterialId => self.ids(|sums| sums.material, materials),
             Layer::Samples => vec![channel("", LayerValues::Uint(self.counts.clone()))],
             Layer::Variance => {
-                let variances = self.data.iter().zip(&self.counts).map(|(sums, &count)| variance_of_mean(sums, count));
-                vectors(["R", "G", "B"], variances)
+                let squares: Vec<_> = self.data.iter().map(|sums| sums.squares).collect();
+                vectors(["R", "G", "B"], self.samples.variances(&squares).into_iter())
             }
         }
     }
@@ -203,11 +211,6 @@ fn group_sums(groups: usize) -> u64 {
 /// The mean distance along the view, over the samples that met a surface.
 fn depth(sums: &DataLayers) -> f32 {
     if sums.surfaces > 0.0 { sums.depth / sums.surfaces } else { FARTHEST_DEPTH }
-}
-
-/// The variance of a mean of independent samples; 0 where it cannot be known, of a single one.
-fn variance_of_mean(sums: &DataLayers, count: u32) -> [f32; 3] {
-    divided(sums.squares, count as f32 * (count as f32 - 1.0))
 }
 
 fn divided(sum: [f32; 3], count: f32) -> [f32; 3] {

@@ -43,21 +43,44 @@
 //! # A program of its own
 //!
 //! An application that has no device yet, and no way to write pictures, takes three crates: `diacaustic`, `diacaustic-headless` for the device and
-//! `diacaustic-output` for the file. This is all of it; `wgpu` and `glam` are re-exported for those who bring their own device.
+//! `diacaustic-output` for the file.
+//!
+//! ```toml
+//! [dependencies]      # folders of the repository, wherever it lies
+//! diacaustic = { path = "diacaustic/crates/render" }
+//! diacaustic-headless = { path = "diacaustic/crates/headless" }
+//! diacaustic-output = { path = "diacaustic/crates/output" }
+//! ```
+//!
+//! This is all of it. It chooses photons and samples by itself and writes `ball.png`; run it with `cargo run --release`, for the scene is prepared on the host. `wgpu` and
+//! `glam` are re-exported for those who bring their own device.
 //!
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use diacaustic::{Renderer, RendererOptions, Stage, scene::load_scene};
+//! use diacaustic::{Renderer, RendererOptions, Stage, scene::parse_scene};
 //! use diacaustic_headless::{OpenOptions, open};
 //! use diacaustic_output::{Display, Picture, Tone, write_png};
 //!
+//! const SCENE: &str = r#"
+//!     camera = { position = [0, 1.5, 2.5], look_at = [0, 0.3, 0], vertical_fov = 40 }
+//!     render = { width = 320, height = 240, target_error = 0.2 }
+//!     output = { exposure = 1.5 } # stops
+//!     materials.glass = { type = "dielectric", ior = 1.5 }
+//!     materials.plaster = { type = "diffuse", albedo = 0.8 }
+//!     lights = [{ type = "sphere", center = [0.5, 2.5, 0.3], radius = 0.05, flux = 35 }]
+//!     objects = [
+//!         { sphere = { center = [0, 0.4, 0], radius = 0.3 }, material = "glass" },
+//!         { rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }, material = "plaster" },
+//!     ]
+//! "#;
+//!
 //! fn main() -> Result<(), Box<dyn std::error::Error>> {
-//!     let scene = load_scene(Path::new("ball.toml"))?.scene;
+//!     let scene = parse_scene(SCENE, Path::new("."), "ball.toml")?.scene; // load_scene reads a file
 //!     let gpu = open(&OpenOptions::default())?;
 //!     let mut renderer = Renderer::new(&gpu.device, &gpu.queue, &RendererOptions::default())?;
 //!     renderer.set_scene(&scene)?;
-//!     while renderer.refine()?.stage != Stage::Done {}
+//!     while renderer.refine()?.stage != Stage::Done {} // each step ends with a better film
 //!
 //!     let film = renderer.film()?;
 //!     let picture = Picture { width: film.width, height: film.height, pixels: &film.radiance };
@@ -174,6 +197,7 @@ mod statistics;
 mod tangent_records;
 mod texture_records;
 mod tile_choice;
+mod variance;
 mod vertex_color_records;
 
 pub use aim::Emission;

@@ -52,6 +52,7 @@ pub enum Stage {
 
 /// How far a render has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Refinement {
     /// What comes next.
     pub stage: Stage,

@@ -5,6 +5,7 @@ use std::time::Duration;
 /// What became of one light's photons, in units of fixed-point sums. The terms are differences of the same integers, so that
 /// emitted = deposited + direct + absorbed + escaped + cut off + shading normals + dispersion exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Ledger {
     /// Flux that left the light toward the casters' bounds.
     pub emitted: [i64; 3],
@@ -28,6 +29,7 @@ pub struct Ledger {
 
 /// The size of one object's energy map.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct MapSize {
     /// Index of the object.
     pub object: usize,
@@ -50,7 +52,8 @@ pub struct MapSize {
 }
 
 /// Something that shines.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct LightReport {
     /// Its name; "material" and the material's name for an emissive material.
     pub name: String,
@@ -60,6 +63,7 @@ pub struct LightReport {
 
 /// What the pilots did that found where photons matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct PilotReport {
     /// Photons that flew and were thrown away, over every light.
     pub photons: u64,
@@ -71,6 +75,7 @@ pub struct PilotReport {
 
 /// What setting a scene built.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct SceneReport {
     /// Triangles with an area.
     pub triangles: usize,
@@ -99,6 +104,7 @@ pub struct SceneReport {
 
 /// What the device has counted since the scene was set.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Photons emitted, over every light.
     pub photons: u64,

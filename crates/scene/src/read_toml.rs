@@ -11,7 +11,7 @@ mod shapes;
 mod table;
 mod textures;
 
-use std::{fs, path::Path};
+use std::{fs, io, path::Path};
 
 use glam::Vec3;
 
@@ -63,7 +63,9 @@ pub fn load_scene(path: &Path) -> Result<LoadedScene, Error> {
 /// # Errors
 /// As [`load_scene`], and if an override leads to no place in the file.
 pub fn load_scene_with(path: &Path, options: &SceneOptions) -> Result<LoadedScene, Error> {
-    let text = fs::read_to_string(path).map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
+    let not_text = |_| io::Error::new(io::ErrorKind::InvalidData, "it is no UTF-8 text, as scene files (.toml) are");
+    let text = fs::read(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
+    let text = text.map_err(|cause| Error::Read { path: path.to_owned(), cause })?;
     parse_scene_with(&text, path.parent().unwrap_or(Path::new("")), &path.display().to_string(), options)
 }
 

@@ -1,5 +1,7 @@
 //! What the renderer needs of surfaces before it runs: world-space triangles, a bounding volume hierarchy over them, the
 //! layout of energy maps and the areas of their texels, bounds of casters. No GPU.
+//!
+//! A part of the crate `diacaustic`, which changes it as it needs; use that.
 
 mod bounds;
 mod bvh;

@@ -1,8 +1,8 @@
 //! `diacaustic completions` and `diacaustic man`: what shells and manuals know of the command.
 
-use std::{io, path::PathBuf};
+use std::path::PathBuf;
 
-use crate::{Command, Error};
+use crate::{Command, Error, print};
 
 /// What `completions` takes.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
@@ -13,8 +13,13 @@ pub struct CompletionsArguments {
 }
 
 /// Prints the completions of a shell on the standard output.
-pub fn run(arguments: &CompletionsArguments) {
-    clap_complete::generate(arguments.shell, &mut Command::interface(), "diacaustic", &mut io::stdout());
+///
+/// # Errors
+/// If they cannot be written.
+pub fn run(arguments: &CompletionsArguments) -> Result<(), Error> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Command::interface(), "diacaustic", &mut script);
+    print(&script)
 }
 
 /// What `man` takes.

@@ -1,7 +1,5 @@
 //! `diacaustic inspect`: what a scene holds.
 
-use std::io::{self, Write as _};
-
 use diacaustic::{
     Renderer, SceneReport,
     glam::Vec3,
@@ -10,7 +8,7 @@ use diacaustic::{
 };
 use diacaustic_headless::adapters;
 
-use crate::{Error, device::DeviceArguments, progress::Metric, scene_arguments::SceneArguments};
+use crate::{Error, device::DeviceArguments, print, progress::Metric, scene_arguments::SceneArguments};
 
 /// What `inspect` takes.
 #[derive(Clone, Debug, PartialEq, clap::Args)]
@@ -27,7 +25,7 @@ pub struct InspectArguments {
 /// Prints on the standard output what the scene holds, what it needs on a device and which devices there are. Needs none.
 ///
 /// # Errors
-/// If the scene cannot be read.
+/// If the scene cannot be read or the text cannot be written.
 pub fn run(arguments: &InspectArguments) -> Result<(), Error> {
     let LoadedScene { scene, warnings } = arguments.scene.load()?;
     let mut text = describe(&scene);
@@ -36,9 +34,7 @@ pub fn run(arguments: &InspectArguments) -> Result<(), Error> {
     for warning in &warnings {
         text.push(format!("warning: {warning}"));
     }
-    // Nobody is left to hear of a closed pipe.
-    let _ = writeln!(io::stdout(), "{}", text.join("\n"));
-    Ok(())
+    print((text.join("\n") + "\n").as_bytes())
 }
 
 fn describe(scene: &Scene) -> Vec<String> {
@@ -81,10 +77,9 @@ fn describe_needs(scene: &Scene, built: &SceneReport) -> Vec<String> {
     let is_open = built.maps.iter().any(|map| scene.objects[map.object].map_size.or(scene.settings.map_size).is_none());
     let most = if is_open { " at most" } else { "" };
     let bytes = Metric(built.device_bytes as f64);
-    [format!("on a device: {bytes}B{most}, {} nodes of a hierarchy, {} energy maps", built.bvh_nodes, built.maps.len())]
-        .into_iter()
-        .chain(maps)
-        .collect()
+    let plural = if built.maps.len() == 1 { "" } else { "s" };
+    let counts = format!("{} nodes of a hierarchy, {} energy map{plural}", built.bvh_nodes, built.maps.len());
+    [format!("on a device: {bytes}B{most}, {counts}")].into_iter().chain(maps).collect()
 }
 
 fn describe_adapters() -> Vec<String> {

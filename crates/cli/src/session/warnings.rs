@@ -110,19 +110,22 @@ mod tests {
 
     fn about(photon_turns: u64, noted: &[Warning], statistics: &Statistics) -> Vec<String> {
         let scene = diacaustic::scene::parse_scene(SCENE, Path::new("."), "scene.toml").unwrap().scene;
-        let report = SceneReport { photon_turns, ..SceneReport::default() };
+        let mut report = SceneReport::default();
+        report.photon_turns = photon_turns;
         about_photons(&scene, noted, &report, statistics)
     }
 
     fn fates(deposits: u64, direct: i64, escaped: i64, cut_off: i64) -> Statistics {
-        let ledger = Ledger {
-            emitted: [1000, 1000, 0],
-            direct: [direct, direct, 0],
-            escaped: [escaped, escaped, 0],
-            cut_off: [cut_off, cut_off, 0],
-            ..Ledger::default()
-        };
-        Statistics { photons: 100, deposits, ledgers: vec![ledger, Ledger::default()], ..Statistics::default() }
+        let mut ledger = Ledger::default();
+        ledger.emitted = [1000, 1000, 0];
+        ledger.direct = [direct, direct, 0];
+        ledger.escaped = [escaped, escaped, 0];
+        ledger.cut_off = [cut_off, cut_off, 0];
+        let mut statistics = Statistics::default();
+        statistics.photons = 100;
+        statistics.deposits = deposits;
+        statistics.ledgers = vec![ledger, Ledger::default()];
+        statistics
     }
 
     #[test]

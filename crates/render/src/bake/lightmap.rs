@@ -8,6 +8,7 @@ use diacaustic_surface::MapLayout;
 /// material: a white matt surface sends E/π of radiance in every direction. Texels without surface hold what those beside them do, so that
 /// bilinear lookups near a border show no seam.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Lightmap {
     /// Texels along x.
     pub width: u32,

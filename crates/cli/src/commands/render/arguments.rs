@@ -32,17 +32,17 @@ pub struct RenderArguments {
     /// Photons in all, such as 1_000_000, in place of the scene's number
     ///
     /// Rounded up to a multiple of the sum of the lights' photon shares, so that each sends its share exactly.
-    #[arg(long, value_name = "N", value_parser = parse_photons)]
+    #[arg(long, value_name = "N", value_parser = parse_photons, allow_negative_numbers = true)]
     pub photons: Option<u64>,
 
     /// Samples of each pixel, in place of the scene's number
-    #[arg(long, value_name = "N", value_parser = parse_samples)]
+    #[arg(long, value_name = "N", value_parser = parse_samples, allow_negative_numbers = true)]
     pub samples: Option<u32>,
 
     /// Error at which photons and samples are enough where their numbers are left open, such as 0.05 for 5 %
     ///
     /// In place of the scene's. The root of the mean squared error of pixels' radiance, relative to it.
-    #[arg(long, value_name = "ERROR", value_parser = parse_target_error)]
+    #[arg(long, value_name = "ERROR", value_parser = parse_target_error, allow_negative_numbers = true)]
     pub target_error: Option<f32>,
 
     /// Render frames A to B, both included, of the scene's animation into numbered files: NAME.0001.png
@@ -70,7 +70,7 @@ pub struct RenderArguments {
     ///
     /// Counted from the start of the program. Photons take at most half of what is left when they begin. There is always one batch
     /// of photons and one sample, however short the time.
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
 }
 

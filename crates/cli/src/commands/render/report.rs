@@ -143,14 +143,13 @@ mod tests {
 
     #[test]
     fn ledgers_are_in_watts() {
-        let lamp = LightReport { name: "lamp".into(), flux: [8.0, 4.0, 2.0] };
-        let ledger = Ledger {
-            emitted: [400, 200, 100],
-            deposited: [300, 200, 100],
-            direct: [100, 0, 1],
-            units_per_watt: 10.0,
-            ..Ledger::default()
-        };
+        let mut lamp = LightReport::default();
+        lamp.flux = [8.0, 4.0, 2.0];
+        let mut ledger = Ledger::default();
+        ledger.emitted = [400, 200, 100];
+        ledger.deposited = [300, 200, 100];
+        ledger.direct = [100, 0, 1];
+        ledger.units_per_watt = 10.0;
         let told = light_ledger(&lamp, &ledger, 10);
         assert_eq!((told.flux, told.emitted), ([8.0, 4.0, 2.0], [4.0, 2.0, 1.0]));
         assert_eq!((told.deposited, told.direct, told.residue), ([3.0, 2.0, 1.0], [1.0, 0.0, 0.01], [0, 0, -1]));
