@@ -5,7 +5,7 @@ mod shapes;
 use std::collections::BTreeMap;
 
 use diacaustic_scene::{Chart, Mesh, Object};
-use diacaustic_surface::{MapLayout, MapTiles, Welds, WorldTriangle, texel_areas, texel_surfaces};
+use diacaustic_surface::{MapLayout, MapTiles, TexelChart, Welds, WorldTriangle, texel_areas, texel_surfaces};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -216,7 +216,7 @@ fn check_even_light(name: &str, object: &Object, layout: &MapLayout, photons: u3
         assert!((deviation - 1.0).abs() < spread, "{name}: {deviation} ± {spread} times the variance expected {place}");
     }
     assert!(counted > 500, "{name}: {counted} texels");
-    if counted > 2000 {
+    if covered.iter().filter(|&&covered| covered > 0.999).count() > 500 {
         let is_border: Vec<bool> = covered.iter().map(|&covered| covered < 0.999).collect();
         check_shown(name, layout, &triangles, &texels, &is_border);
     }
@@ -241,11 +241,22 @@ fn check_shown(name: &str, layout: &MapLayout, triangles: &[WorldTriangle], texe
         }
         sums.map(|[sum, count, most]| [sum / count, most])
     };
-    let [[inside, most_inside], [border, most]] = deviations(&Welds::new(&tiles, &surfaces));
+    let [[inside, _], [border, most]] = deviations(&Welds::new(&tiles, &surfaces));
     let [_, [rough, most_rough]] = deviations(&Welds::default());
     println!(
-        "{name}: squares {inside:.4} (at most {most_inside:.3}) inside, {border:.4} ({most:.3}) near borders; as texels are, {rough:.4} ({most_rough:.2})"
+        "{name}: mean squared deviation {inside:.4} inside, {border:.4} near borders ({rough:.4} if texels stand alone), \
+         the largest {most:.2} ({most_rough:.2})"
     );
+    // Scraps of a chart that is no texel large altogether have nothing to join.
+    let mut charts = BTreeMap::<u32, f32>::new();
+    for texel in &surfaces {
+        if let TexelChart::One(chart) = texel.chart {
+            *charts.entry(chart).or_default() += texel.covered;
+        }
+    }
+    let times = if charts.values().any(|covered| *covered < 0.4) { 2.8 } else { 1.2 };
+    assert!(border < times * inside, "{name}: {border} near borders, {inside} inside");
+    assert!(border < rough, "{name}: {border} near borders, {rough} as texels are");
 }
 
 fn check_shape(name: &str, mesh: Mesh, map_size: u32) {
@@ -439,6 +450,13 @@ proptest! {
         if !triangles.is_empty() {
             let deposited: i64 = lit_evenly(&layout, &triangles, 100).iter().map(|texel| texel.sum).sum();
             prop_assert_eq!(deposited, 100 * UNITS);
+            // Even light is even, however small the parts of charts that texels hold.
+            let tiles = MapTiles::dense(&layout);
+            let surfaces = texel_surfaces(&layout, &tiles, &triangles);
+            let areas: Vec<f64> = surfaces.iter().map(|texel| texel.area).collect();
+            let shown = Welds::new(&tiles, &surfaces).irradiance(&areas, &areas);
+            let is_even = |(value, area): (&f64, &f64)| *area <= 0.0 || (value - 1.0).abs() < 1e-6;
+            prop_assert!(shown.iter().zip(&areas).all(is_even));
         }
     }
 
