@@ -1,5 +1,5 @@
-// Irradiance is smoothed where texels differ by no more than the noise of their photons: one step of an edge-avoiding filter "with holes"
-// (Dammertz et al. 2010), whose kernel doubles from step to step. Texels exchange flux in pairs. docs/energy-maps.md, "Smoothing".
+// Irradiance is smoothed where the surroundings of texels differ by no more than the noise of their photons: one step of an edge-avoiding filter
+// "with holes" (Dammertz et al. 2010), whose kernel doubles from step to step. Texels exchange flux in pairs. docs/energy-maps.md, "Filter".
 
 import package::film::texels::tile_at;
 import package::film::welds::{between_welds, load_map_texel};
@@ -9,30 +9,34 @@ import package::layout::records::{load_map_layer, record_texel};
 import package::layout::scene::NONE;
 import package::layout::smooth_pass::{map_tiles, rough_irradiance, smooth_params};
 
-/// How much two texels' squared difference may exceed the sum of their variances for 1/e of the exchange.
-const TOLERANCE: f32 = 15.0;
-/// How much larger the neighbours of a scrap are than it, on average.
-const SCRAP: f32 = 2.5;
+/// How much the squared difference of two texels' guides may exceed the sum of the texels' variances for 1/e of the exchange. Half of what single
+/// photons make of texels goes on the way to the guides.
+const TOLERANCE: f32 = 6.0;
+/// Weight of a texel itself in its guide.
+const OWN_KERNEL: f32 = 0.25;
 /// A difference of places, in cells, that is rounding.
 const SAME_PLACE: f32 = 0.01;
 
 /// What a texel, or a place near one, holds.
 struct Neighbour {
-    /// Irradiance and variance of all light, and of the entry that is smoothed.
-    total: vec4<f32>,
+    /// Guide and variance of all light.
+    guide: vec4<f32>,
+    /// Irradiance and variance of the entry that is smoothed.
     own: vec4<f32>,
     /// Area, m²; 0 if it is not of the texel's chart.
     area: f32,
 }
 
-/// What a texel of some area holds.
+/// What a texel of some area holds. Without guides it is its own.
 fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
     let first = (1u + light_group_count) * texel;
-    let total = textureLoad(rough_irradiance, record_texel(first), 0);
+    let guides = select(smooth_params.first_guide, 0u, smooth_params.makes_guide != 0u);
+    let guide = textureLoad(rough_irradiance, record_texel(guides + first), 0);
+    let irradiance = textureLoad(rough_irradiance, record_texel(first + entry), 0).xyz;
     if light_group_count == 0u {
-        return Neighbour(total, total, area);
+        return Neighbour(guide, vec4<f32>(irradiance, guide.w), area);
     }
-    return Neighbour(total, textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
+    return Neighbour(guide, vec4<f32>(irradiance, textureLoad(rough_irradiance, record_texel(guides + first + entry), 0).w), area);
 }
 
 /// What a neighbour holds.
@@ -65,7 +69,7 @@ fn place_neighbour(layer_index: u32, place: vec2<f32>, chart: u32, entry: u32) -
             if one.area <= 0.0 {
                 return Neighbour(vec4<f32>(0.0), vec4<f32>(0.0), 0.0);
             }
-            sum.total += weight * one.total;
+            sum.guide += weight * one.guide;
             sum.own += weight * one.own;
             sum.area += weight * one.area;
         }
@@ -73,25 +77,25 @@ fn place_neighbour(layer_index: u32, place: vec2<f32>, chart: u32, entry: u32) -
     return sum;
 }
 
-/// What a texel gains from its neighbours.
+/// What a texel gains from its neighbours, and what is around it.
 struct Exchange {
     change: vec3<f32>,
     /// Of what it gains.
     variance: f32,
     /// Share that the texel gives away.
     given: f32,
-    /// Sums over the neighbours there are: of kernel weights, and by these of variances for an area of 1 m².
+    /// Sums over the neighbours there are: of kernel weights, and by these of areas, of flux, and of variances for an area of 1 m².
     kernel: f32,
-    around: f32,
-    /// The same sum of their areas.
     area: f32,
+    flux: vec3<f32>,
+    around: f32,
 }
 
 /// Adds the exchange of a texel with neighbour k of nine, row by row: as much flux as the other gives this one, for each weighs by the smaller
 /// area of the two.
 fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
-    let difference = other.total.xyz - texel.total.xyz;
-    let noise = max(TOLERANCE * (texel.total.w + other.total.w), 1e-37);
+    let difference = other.guide.xyz - texel.guide.xyz;
+    let noise = max(TOLERANCE * (texel.guide.w + other.guide.w), 1e-37);
     let kernel = select(0.0625, 0.125, (k & 1u) == 1u);
     let bounded = kernel * min(other.area / texel.area, 1.0);
     let weight = bounded * exp(-dot(difference, difference) / (3.0 * noise));
@@ -99,11 +103,22 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
     (*exchange).variance += weight * weight * other.own.w;
     (*exchange).given += weight;
     (*exchange).kernel += kernel;
-    (*exchange).around += kernel * other.own.w * other.area;
     (*exchange).area += kernel * other.area;
+    (*exchange).flux += kernel * other.area * other.own.xyz;
+    (*exchange).around += kernel * other.own.w * other.area;
 }
 
-/// A texel's irradiance and variance after a step.
+/// A texel's guide: what is on and around it.
+fn guide_of(texel: Neighbour, exchange: Exchange) -> vec4<f32> {
+    let own = OWN_KERNEL * texel.area;
+    let mean = (own * texel.own.xyz + exchange.flux) / (own + exchange.area);
+    if smooth_params.averages_variance == 0u {
+        return vec4<f32>(mean, texel.own.w);
+    }
+    return vec4<f32>(mean, (own * texel.own.w + exchange.around) / (OWN_KERNEL + exchange.kernel) / texel.area);
+}
+
+/// A texel's irradiance and variance after a step, or its guide for one.
 fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
     let texel = held(index, entry, record.area);
     if record.chart == 0u || record.chart == NONE || record.area <= 0.0 {
@@ -139,18 +154,12 @@ fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
             exchange_with(&exchange, k, texel, other);
         }
     }
-    if smooth_params.only_variance != 0u {
-        let around = (0.25 * texel.own.w * texel.area + exchange.around) / (0.25 + exchange.kernel);
-        return vec4<f32>(texel.own.xyz, around / texel.area);
+    if smooth_params.makes_guide != 0u {
+        return guide_of(texel, exchange);
     }
-    // A scrap at a chart's border is noisy and has few neighbours: it takes as much as one with all eight.
-    var boost = 1.0;
-    if exchange.area > SCRAP * texel.area * exchange.kernel {
-        boost = 0.75 / exchange.kernel;
-    }
-    let kept = 1.0 - boost * exchange.given;
-    let variance = kept * kept * texel.own.w + boost * boost * exchange.variance;
-    return vec4<f32>(texel.own.xyz + boost * exchange.change, smooth_params.variance_factor * variance);
+    let kept = 1.0 - exchange.given;
+    let variance = kept * kept * texel.own.w + exchange.variance;
+    return vec4<f32>(texel.own.xyz + exchange.change, smooth_params.variance_factor * variance);
 }
 
 @compute @workgroup_size(64)
@@ -171,7 +180,15 @@ fn smooth_maps(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
         if is_weld {
             welded[entries * index + entry] = value;
         } else {
-            textureStore(texel_irradiance, record_texel(entries * index + entry), between_welds(record.link, entry, entries, value));
+            let own = entries * index + entry;
+            let shown = between_welds(record.link, entry, entries, value);
+            if smooth_params.makes_guide == 0u {
+                textureStore(texel_irradiance, record_texel(own), shown);
+            } else {
+                // The step reads both in one texture.
+                textureStore(texel_irradiance, record_texel(own), textureLoad(rough_irradiance, record_texel(own), 0));
+                textureStore(texel_irradiance, record_texel(smooth_params.first_guide + own), shown);
+            }
         }
     }
 }

@@ -32,13 +32,15 @@ struct SmoothParams {
     distance: i32,
     /// Factor on the variance that the smoothed texels have if their errors do not depend on each other.
     variance_factor: f32,
-    /// 1 for a dispatch that smooths variance alone: few photons say little of it.
-    only_variance: u32,
-    /// Unused.
-    padding: u32,
+    /// 1 for a dispatch that makes the guide of a step: what texels are compared by.
+    makes_guide: u32,
+    /// 1 if the guide's variance is the mean around a texel: few photons say little of it.
+    averages_variance: u32,
+    /// Entries of the texture before those of the guides.
+    first_guide: u32,
 }
 
 @group(2) @binding(0) var<uniform> smooth_params: SmoothParams;
 @group(2) @binding(1) var<storage, read> map_tiles: array<MapTileRecord>;
-/// Irradiance and variance of each texel before they are smoothed.
+/// Irradiance of each texel before it is smoothed, and its variance. Guides follow, but for the dispatch that makes them.
 @group(2) @binding(2) var rough_irradiance: texture_2d<f32>;

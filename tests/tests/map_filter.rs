@@ -63,7 +63,9 @@ fn a_filtered_map_goes_to_the_truth() {
     let errors = |photons| [&rough, &filtered].map(|scene| error(&map(scene, photons), &truth));
     let (few, more) = (errors(10_000), errors(160_000));
     println!("10,000 photons: {few:?}, 160,000: {more:?}");
-    assert!(more[1] < 0.4 * few[1], "16 times the photons: from {few:?} to {more:?}");
+    assert!(more[1] < 0.2 * few[1], "16 times the photons: from {few:?} to {more:?}");
+    // The focus is small against these texels: what is sharp stays so.
+    assert!(few[1] < 0.8 * few[0] && more[1] < 1.2 * more[0], "filtered and not: {few:?} and {more:?}");
 }
 
 /// A box that light from straight above reaches through glass of index 1: its top is lit, its other sides are dark.

@@ -74,7 +74,9 @@ pub(crate) fn place_maps(
         let first_texel = next_texel;
         next_texel += tiles.texel_count();
         let surfaces = plan.texel_surfaces(&tiles);
-        let welds = Arc::new(Welds::new(&tiles, &surfaces));
+        // The paper divides every texel's sum by the same.
+        let welds = if plan.paper_size.is_some() { Welds::default() } else { Welds::new(&tiles, &surfaces) };
+        let welds = Arc::new(welds);
         Some(MapPlacement { first_texel, surfaces, welds, tiles, layout: plan.layout, paper_size: plan.paper_size })
     });
     Ok(placed.collect())

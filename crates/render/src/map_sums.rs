@@ -15,8 +15,6 @@ use crate::{
 const GROUP_ALIGNMENT: u64 = 64;
 /// Steps of the filter: a texel is compared with those that are 1, 2, 4, … cells away.
 const FILTER_STEPS: u32 = 5;
-/// The passes, one more than steps, end in the target where they begin.
-const _: () = assert!(FILTER_STEPS % 2 == 1);
 /// What photons that fall on four texels each make of the variance of a mean over many texels, against that of independent texels: the squares
 /// of bilinear weights sum to (2/3)² on average, their sum to 1.
 const BILINEAR_VARIANCE: f32 = 2.25;
@@ -72,14 +70,15 @@ impl SumsFormat {
     pub fn most_texels(self, limits: &wgpu::Limits) -> u64 {
         let bindable = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let of_sums = bindable / (self.groups * self.words_bytes()) / GROUP_ALIGNMENT * GROUP_ALIGNMENT;
-        let of_textures = (u64::from(limits.max_texture_dimension_2d) << RECORDS_WIDTH_BITS) / self.entries();
+        let entries = self.entries() * if self.has_squares { 2 } else { 1 };
+        let of_textures = (u64::from(limits.max_texture_dimension_2d) << RECORDS_WIDTH_BITS) / entries;
         of_sums.min(of_textures)
     }
 
-    /// Bytes that a texel takes on the device: its sums, its record and its irradiance, filtered too if it is.
+    /// Bytes that a texel takes on the device: its sums, its record and its irradiance, and what the filter of that needs.
     pub fn bytes_on_device(self) -> u64 {
         let irradiance = 16 * self.entries();
-        self.groups * self.bytes() + 16 + irradiance * if self.has_squares { 2 } else { 1 }
+        self.groups * self.bytes() + 16 + irradiance * if self.has_squares { 3 } else { 1 }
     }
 }
 
@@ -96,11 +95,18 @@ pub(crate) struct EnergyMaps {
     format: SumsFormat,
     resolve_params: wgpu::Buffer,
     resolve_group: wgpu::BindGroup,
-    /// What passes write into: irradiance, and in scenes with a filter a second texture in turn with it.
+    /// What passes write into: irradiance, and in scenes with a filter a second texture in turn with it, in which guides follow.
     targets: Vec<Target>,
-    filter_params: wgpu::Buffer,
-    /// The pipeline of the filter, if there is one.
-    filter: Option<wgpu::ComputePipeline>,
+    filter: Option<Filter>,
+}
+
+/// The filter of maps.
+#[derive(Debug)]
+struct Filter {
+    pipeline: wgpu::ComputePipeline,
+    params: wgpu::Buffer,
+    /// To read either target.
+    read: [wgpu::BindGroup; 2],
 }
 
 /// The words of the sums, three or four for each texel.
@@ -114,10 +120,9 @@ struct Sums {
 #[derive(Debug)]
 struct Target {
     texture: wgpu::Texture,
+    view: wgpu::TextureView,
     /// To write into it.
     written: wgpu::BindGroup,
-    /// To filter it.
-    read: wgpu::BindGroup,
 }
 
 /// The pipelines from sums to irradiance.
@@ -171,30 +176,44 @@ impl ResolvePass {
             gpu.queue.write_buffer(&maps.resolve_params, 0, bytemuck::bytes_of(&params));
             gpu.dispatch(&self.resolve, &[of.scene, &maps.targets[0].written, &maps.resolve_group], size);
         }
-        if let Some(pipeline) = maps.filter.as_ref().filter(|_| of.photons > 0) {
-            Self::filter(gpu, maps, pipeline, of);
+        if let Some(filter) = maps.filter.as_ref().filter(|_| of.photons > 0) {
+            (0..FILTER_STEPS).for_each(|step| filter.step(gpu, maps, of, step));
         }
     }
+}
 
-    /// Filters irradiance, from one target to the other and back: first its variance alone, then in steps of growing distance.
-    fn filter(gpu: &Gpu, maps: &EnergyMaps, pipeline: &wgpu::ComputePipeline, of: Resolving) {
-        for pass in 0..=FILTER_STEPS {
-            let from = pass as usize % 2;
-            let variance_factor = if pass == 1 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
+impl Filter {
+    fn new(
+        gpu: &Gpu,
+        pass: &ResolvePass,
+        pipeline: wgpu::ComputePipeline,
+        tiles: &wgpu::Buffer,
+        targets: [&Target; 2],
+    ) -> Self {
+        let params = gpu.uniform::<SmoothParams>("smooth");
+        let read = targets.map(|target| {
+            let (params, tiles) = (params.as_entire_binding(), tiles.as_entire_binding());
+            gpu.bind_resources(
+                &pass.filter_layout,
+                vec![params, tiles, wgpu::BindingResource::TextureView(&target.view)],
+            )
+        });
+        Self { pipeline, params, read }
+    }
+
+    /// Filters irradiance once: from the first target to the second, with guides, and back, smoothed where these are alike.
+    fn step(&self, gpu: &Gpu, maps: &EnergyMaps, of: Resolving, step: u32) {
+        let template = SmoothParams { first_guide: maps.entries() as u32, distance: 1, ..Default::default() };
+        let variance_factor = if step == 0 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
+        let guide = SmoothParams { makes_guide: 1, averages_variance: u32::from(step == 0), ..template };
+        let smooth = SmoothParams { distance: 1 << step, variance_factor, ..template };
+        for (from, params) in [guide, smooth].into_iter().enumerate() {
             for (of_welds, count) in maps.dispatches() {
                 let size = workgroups(count);
-                let params = SmoothParams {
-                    count: count as u32,
-                    groups_x: size[0],
-                    of_welds,
-                    distance: 1 << pass.saturating_sub(1),
-                    variance_factor,
-                    only_variance: u32::from(pass == 0),
-                    ..Default::default()
-                };
-                gpu.queue.write_buffer(&maps.filter_params, 0, bytemuck::bytes_of(&params));
-                let groups = [of.scene, &maps.targets[1 - from].written, &maps.targets[from].read];
-                gpu.dispatch(pipeline, &groups, size);
+                let params = SmoothParams { count: count as u32, groups_x: size[0], of_welds, ..params };
+                gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
+                let groups = [of.scene, &maps.targets[1 - from].written, &self.read[from]];
+                gpu.dispatch(&self.pipeline, &groups, size);
             }
         }
     }
@@ -216,21 +235,19 @@ impl EnergyMaps {
         format: SumsFormat,
         features: Features,
     ) -> Result<Self, Error> {
-        let filter = format.has_squares.then(|| pass.smooth.get(gpu, features.for_filter()));
         let purpose = if format.groups > 1 { GROUP_SUMS } else { SUMS };
         let texel_count: u64 = placements.iter().flatten().map(|map| map.tiles.texel_count()).sum();
         let words_bytes = format.groups * texel_count.next_multiple_of(GROUP_ALIGNMENT) * format.words_bytes();
         let sums = Sums { low: gpu.zeroed(purpose, words_bytes)?, high: gpu.zeroed(purpose, words_bytes)? };
         let texels = MapTexels::new(gpu, &placements)?;
         let welded = gpu.zeroed(WELDED, texels.weld_count * format.entries() * 16)?;
-        let (resolve_params, filter_params) =
-            (gpu.uniform::<ResolveParams>("resolve"), gpu.uniform::<SmoothParams>("smooth"));
+        let resolve_params = gpu.uniform::<ResolveParams>("resolve");
         let resolve_group = gpu.bind(&pass.sums_layout, &[&resolve_params, &sums.low, &sums.high]);
-        let target = |purpose: Purpose| {
+        let target = |purpose: Purpose, copies: u64| {
             let usage = wgpu::TextureUsages::STORAGE_BINDING
                 | wgpu::TextureUsages::TEXTURE_BINDING
                 | wgpu::TextureUsages::COPY_SRC;
-            let entries = format.entries() * texel_count;
+            let entries = copies * format.entries() * texel_count;
             let texture = gpu.texels(purpose, wgpu::TextureFormat::Rgba32Float, usage, entries)?;
             let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
             let written = gpu.bind_resources(
@@ -243,18 +260,18 @@ impl EnergyMaps {
                     wgpu::BindingResource::TextureView(&view),
                 ],
             );
-            let read = gpu.bind_resources(
-                &pass.filter_layout,
-                vec![
-                    filter_params.as_entire_binding(),
-                    texels.tiles.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&view),
-                ],
-            );
-            Ok(Target { texture, written, read })
+            Ok::<_, Error>(Target { texture, view, written })
         };
-        let purposes = [IRRADIANCE, FILTERED].into_iter().take(if format.has_squares { 2 } else { 1 });
-        let targets = purposes.map(target).collect::<Result<Vec<_>, Error>>()?;
+        let mut targets = vec![target(IRRADIANCE, 1)?];
+        if format.has_squares {
+            targets.push(target(FILTERED, 2)?);
+        }
+        let filter = if let [first, second] = targets.as_slice() {
+            let pipeline = pass.smooth.get(gpu, features.for_filter());
+            Some(Filter::new(gpu, pass, pipeline, &texels.tiles, [first, second]))
+        } else {
+            None
+        };
         let textures: u64 = targets.iter().map(|target| texture_bytes(&target.texture)).sum();
         let shown = targets.first().map(|target| target.texture.create_view(&wgpu::TextureViewDescriptor::default()));
         Ok(Self {
@@ -268,7 +285,6 @@ impl EnergyMaps {
             resolve_params,
             resolve_group,
             targets,
-            filter_params,
             filter,
         })
     }
@@ -276,6 +292,11 @@ impl EnergyMaps {
     /// The dispatches of a pass over all texels: whether over welds, and over how many. Those over welds come first.
     fn dispatches(&self) -> impl Iterator<Item = (u32, u64)> {
         [(1, self.weld_count), (0, self.texel_count)].into_iter().filter(|&(_, count)| count > 0)
+    }
+
+    /// Entries of irradiance of all texels.
+    fn entries(&self) -> u64 {
+        self.format.entries() * self.texel_count
     }
 
     /// Texels from a light group's maps to the next one's.

@@ -16,6 +16,9 @@ const UNLIT_COARSENESS: f64 = 4.0;
 /// How far light makes its surroundings count as lit, in the width of the square that is looked at. What lies so near a quarter of a square
 /// lies so near the square too.
 const LIT_MARGIN: f64 = 0.5;
+/// Photons that would be expected on a square without any, if light were even over the larger one around it, for which chance may explain that
+/// there are none: it counts as lit.
+const CHANCE_LANDINGS: Range<f64> = 0.25..3.0;
 /// Pixels that a sighting after diffuse surfaces counts, against one that the picture shows.
 const BOUNCED_PIXELS: f64 = 1.0 / 64.0;
 /// Importance of what is unlit against what is lit, where not all can be had.
@@ -96,7 +99,7 @@ pub(crate) fn choose_tiles(
         for (layer, known) in (0..plan.layout.layers).zip(&evidence[2 * map..]) {
             for (y, x) in (0..rows).flat_map(|y| (0..columns).map(move |x| (y, x))) {
                 let square = MapSquare { layer, level: 0, x, y };
-                fronts.push(grow(&mut nodes, plan, square, &known.within(square, LIT_MARGIN)));
+                fronts.push(grow(&mut nodes, plan, square, &known.within(square, LIT_MARGIN), 0.0));
             }
         }
     }
@@ -155,11 +158,13 @@ impl Evidence {
     }
 }
 
-/// Adds a square and those in it; returns its index.
-fn grow(nodes: &mut Vec<Node>, plan: &MapPlan, square: MapSquare, known: &Evidence) -> usize {
+/// Adds a square and those in it; returns its index. As many photons as `expected` would have landed here if light were even over the square
+/// around it.
+fn grow(nodes: &mut Vec<Node>, plan: &MapPlan, square: MapSquare, known: &Evidence, expected: f64) -> usize {
     let quarters = square.children().map(|child| known.within(child, LIT_MARGIN));
     let pixels = known.pixels();
-    let is_lit = !known.lit.is_empty();
+    let landings = if known.lit.is_empty() { expected } else { known.lit.len() as f64 };
+    let is_lit = !known.lit.is_empty() || CHANCE_LANDINGS.contains(&expected);
     // A square may be seen in part, so its finest quarter decides.
     let densest = 4.0 * quarters.iter().map(Evidence::pixels).fold(0.0, f64::max);
     let coarseness = if is_lit { 1.0 } else { UNLIT_COARSENESS };
@@ -176,7 +181,7 @@ fn grow(nodes: &mut Vec<Node>, plan: &MapPlan, square: MapSquare, known: &Eviden
     let can_tell_parts = known.seen.len() >= LEAST_SIGHTINGS || units > f64::from(1 << TILE_CELLS);
     if cells > TILE_CELLS && can_tell_parts && square.level < FINEST_LEVEL {
         let pairs: [_; 4] = std::array::from_fn(|quarter| (square.children()[quarter], &quarters[quarter]));
-        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, plan, child, quarter)));
+        nodes[node].children = Some(pairs.map(|(child, quarter)| grow(nodes, plan, child, quarter, 0.25 * landings)));
     }
     node
 }

@@ -11,6 +11,9 @@ use crate::{MapLayout, MapSquare, MapTile, MapTiles, WorldTriangle, tile::FINEST
 pub struct TexelSurface {
     /// The integral of the texel's bilinear weight over the object's surface in the world that lies on its tile, m².
     pub area: f64,
+    /// The same integral over the part of the plane that the surface covers, in cells of the tile: 1 of a texel with surface all around it, a
+    /// half on a tile's border.
+    pub covered: f32,
     /// The chart that all of it belongs to.
     pub chart: TexelChart,
 }
@@ -189,6 +192,9 @@ fn folded_points([a, b, c]: [DVec2; 3], area: f64) -> Vec<(DVec2, f64)> {
     points
 }
 
+/// Cells that a point of a folded triangle counts as covering.
+const POINT_COVER: f64 = 4.0;
+
 /// The texels of a tile, as a piece of surface is added to them.
 struct Grid<'a> {
     width: usize,
@@ -213,36 +219,38 @@ impl Grid<'_> {
             for x in first..=last {
                 let corner = DVec2::new(x as f64, y as f64);
                 if cell_is_inside(corner, &places) {
-                    self.add_moments(x, y, density, [1.0, 0.5, 0.5, 0.25]);
+                    self.add_moments(x, y, [density, 1.0], [1.0, 0.5, 0.5, 0.25]);
                 } else {
                     let right_of = clip(&strip, |p| p.x - x as f64);
                     let cell = clip(&right_of, |p| (x + 1) as f64 - p.x);
-                    self.add_moments(x, y, density, moments(&cell, corner));
+                    self.add_moments(x, y, [density, 1.0], moments(&cell, corner));
                 }
             }
         }
     }
 
-    /// Adds an area at one point.
+    /// Adds an area at one point, around which the plane counts as covered.
     fn add_point(&mut self, place: DVec2, area: f64) {
         let cell = place.floor().clamp(DVec2::ZERO, self.last_cell);
         let f = (place - cell).clamp(DVec2::ZERO, DVec2::ONE);
-        self.add_moments(cell.x as usize, cell.y as usize, area, [1.0, f.x, f.y, f.x * f.y]);
+        self.add_moments(cell.x as usize, cell.y as usize, [area, POINT_COVER], [1.0, f.x, f.y, f.x * f.y]);
     }
 
-    /// Adds the moments (1, s, t, st) of an area in a cell's own coordinates to the cell's four texels.
-    fn add_moments(&mut self, x: usize, y: usize, density: f64, [one, s, t, st]: [f64; 4]) {
+    /// Adds the moments (1, s, t, st) of a part of a cell, in its own coordinates, to the cell's four texels: each unit stands for so many m²
+    /// and so many covered units.
+    fn add_moments(&mut self, x: usize, y: usize, densities: [f64; 2], [one, s, t, st]: [f64; 4]) {
         let first = y * self.width + x;
-        self.add_area(first, density * (one - s - t + st));
-        self.add_area(first + 1, density * (s - st));
-        self.add_area(first + self.width, density * (t - st));
-        self.add_area(first + self.width + 1, density * st);
+        self.add_part(first, densities, one - s - t + st);
+        self.add_part(first + 1, densities, s - st);
+        self.add_part(first + self.width, densities, t - st);
+        self.add_part(first + self.width + 1, densities, st);
     }
 
-    fn add_area(&mut self, texel: usize, area: f64) {
+    fn add_part(&mut self, texel: usize, [area, covered]: [f64; 2], part: f64) {
         let texel = &mut self.texels[texel];
-        texel.area += area;
-        if area > 0.0 {
+        texel.area += area * part;
+        texel.covered += (covered * part) as f32;
+        if area * part > 0.0 {
             texel.chart = texel.chart.and(self.chart);
         }
     }

@@ -1,5 +1,7 @@
 //! How the tiles of a map join: texels of several tiles that stand at one place are one, and texels on the border of a coarser tile lie
-//! between its texels, so that irradiance has no jumps.
+//! between its texels, so that irradiance has no jumps; and scraps at charts' borders are one with what is beside them.
+
+mod scraps;
 
 use std::collections::HashMap;
 
@@ -11,16 +13,16 @@ const STEP_BITS: u32 = 8;
 /// How the tiles of a map join.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Welds {
-    /// The places at which texels of several tiles meet.
+    /// Places at which texels of several tiles meet, and scraps with what they are one with.
     pub welds: Vec<Weld>,
     /// The texels that get their irradiance from welds, in order, each with those that it lies between.
     pub linked: Vec<(u64, Vec<WeldPart>)>,
 }
 
-/// A place at which texels of several tiles meet.
+/// Texels that are one: they stand at one place, or some are scraps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weld {
-    /// The texel of the coarsest tile there.
+    /// The texel that stands for all: of the coarsest tile at a place.
     pub owner: u64,
     /// The texels whose flux and area it takes, with the part of each.
     pub sources: Vec<WeldPart>,
@@ -44,6 +46,11 @@ impl Welds {
     /// The welds of a map's tiles, whose texels have the given surfaces. Texels are joined where they are of one chart. Tiles whose cells are
     /// no power of two along both axes, as of a map of a stated size, are alone in their layer.
     pub fn new(tiles: &MapTiles, texels: &[TexelSurface]) -> Self {
+        scraps::join_scraps(tiles, texels, Self::of_tiles(tiles, texels))
+    }
+
+    /// Those of texels of several tiles.
+    fn of_tiles(tiles: &MapTiles, texels: &[TexelSurface]) -> Self {
         let mut welds = Self::default();
         let is_joined = |[x, y]: [u32; 2]| x == y && x.is_power_of_two() && x <= 1 << STEP_BITS;
         if !tiles.tiles.iter().all(|tile| is_joined(tile.cells)) {
@@ -206,11 +213,11 @@ fn border(number: usize, tile: &MapTile) -> impl Iterator<Item = (Place, u64, us
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
+    use glam::{DVec2, Vec2};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::{MapLayout, MapSquare};
+    use crate::{MapLayout, MapSquare, WorldTriangle, texel_surfaces};
 
     const LAYOUT: MapLayout = MapLayout {
         width: 33,
@@ -246,7 +253,8 @@ mod tests {
                 let half = |at: u32, last: u32| if at == 0 || at == last { 0.5 } else { 1.0 };
                 let area = cell.element_product() * half(i, tile.cells[0]) * half(j, tile.cells[1]);
                 let place = tiles.origin(tile) + cell * DVec2::new(i.into(), j.into());
-                texels.push(TexelSurface { area, chart: TexelChart::One(chart(place)) });
+                let covered = (half(i, tile.cells[0]) * half(j, tile.cells[1])) as f32;
+                texels.push(TexelSurface { area, covered, chart: TexelChart::One(chart(place)) });
             }
         }
         texels
@@ -319,5 +327,57 @@ mod tests {
     fn a_map_of_one_tile_has_nothing_to_join() {
         let tiles = MapTiles::dense(&LAYOUT);
         assert_eq!(Welds::new(&tiles, &flat(&tiles, |_| 0)), Welds::default());
+    }
+
+    /// Texels of a plane of which what lies below a line is one chart, with the surface behind each.
+    fn below_a_line(tiles: &MapTiles, slope: f64, height: f64) -> Vec<TexelSurface> {
+        let end = |x: f32| Vec2::new(x, (slope * f64::from(x) + height) as f32);
+        let corners = [[Vec2::ZERO, Vec2::new(32.0, 0.0), end(32.0)], [Vec2::ZERO, end(32.0), end(0.0)]];
+        let layout = MapLayout { corners: corners.to_vec(), charts: vec![0; 2], ..LAYOUT };
+        let triangle = |(triangle, places): (u32, [Vec2; 3])| WorldTriangle {
+            corners: places.map(|place| place.extend(0.0)),
+            normals: None,
+            uvs: None,
+            object: 0,
+            triangle,
+            material: 0,
+            exchanged: false,
+        };
+        texel_surfaces(&layout, tiles, &(0..).zip(corners).map(triangle).collect::<Vec<_>>())
+    }
+
+    proptest! {
+        /// Whatever the border of a chart cuts off: flux is kept, even light stays even, and each texel takes its irradiance from an area
+        /// that is large enough.
+        #[test]
+        fn scraps_are_one_with_what_is_beside_them(
+            splits in prop::collection::vec(prop::bool::ANY, 60), slope in -0.2f64..0.2, height in 6.5f64..9.5,
+        ) {
+            for tiles in [tree(&splits), MapTiles::dense(&LAYOUT)] {
+                let texels = below_a_line(&tiles, slope, height);
+                let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
+                let welds = Welds::new(&tiles, &texels);
+                let even = welds.irradiance(&areas.iter().map(|area| 3.0 * area).collect::<Vec<f64>>(), &areas);
+                let is_even = |(value, area): (&f64, &f64)| *area == 0.0 || (value - 3.0).abs() < 1e-9;
+                prop_assert!(even.iter().zip(&areas).all(is_even));
+                let flux: Vec<f64> = areas.iter().enumerate().map(|(k, area)| area * (k % 7) as f64).collect();
+                let irradiance = welds.irradiance(&flux, &areas);
+                let kept: f64 = irradiance.iter().zip(&areas).map(|(value, area)| value * area).sum();
+                prop_assert!((kept / flux.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+
+                let mut behind: Vec<f64> = areas.clone();
+                for (texel, links) in &welds.linked {
+                    let least = links.iter().map(|link| welds.welds[link.index as usize].area);
+                    behind[*texel as usize] = least.fold(f64::INFINITY, f64::min);
+                }
+                for tile in &tiles.tiles {
+                    let cell = tiles.cell_size(tile).element_product();
+                    let own = tile.first_texel as usize..(tile.first_texel + tile.texel_count()) as usize;
+                    // A corner of the plane holds a quarter, and the smallest tiles may have one texel or two of the chart.
+                    let is_large = |&texel: &usize| behind[texel] == 0.0 || behind[texel] > 0.24 * cell;
+                    prop_assert!(tile.cells[0] < 4 || own.into_iter().all(|texel| is_large(&texel)), "{tile:?}");
+                }
+            }
+        }
     }
 }

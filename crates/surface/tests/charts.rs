@@ -5,7 +5,7 @@ mod shapes;
 use std::collections::BTreeMap;
 
 use diacaustic_scene::{Chart, Mesh, Object};
-use diacaustic_surface::{MapLayout, MapTiles, WorldTriangle, texel_areas};
+use diacaustic_surface::{MapLayout, MapTiles, TexelChart, Welds, WorldTriangle, texel_areas, texel_surfaces};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -127,15 +127,15 @@ fn check_plane(object: &Object, layout: &MapLayout) {
 /// Units of a photon's flux.
 const UNITS: i64 = 1 << 24;
 
-/// A texel's sum of flux and of the squares of its shares.
-#[derive(Clone, Copy, Default)]
-struct Texel {
-    sum: i64,
-    squares: f64,
-}
+/// A photon's texels and its shares there.
+type Deposit = [(usize, i64); 4];
 
-/// Lays photons on points spread evenly over the surface, as the kernel does.
-fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> Vec<Texel> {
+/// Points spread evenly over the surface, each with the texels around it and their shares of a photon, as the kernel lays them.
+fn even_points<'a>(
+    layout: &'a MapLayout,
+    triangles: &'a [WorldTriangle],
+    points: std::ops::Range<u32>,
+) -> impl Iterator<Item = Deposit> + 'a {
     let ends: Vec<f64> = triangles
         .iter()
         .scan(0.0, |sum, triangle| {
@@ -143,9 +143,8 @@ fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> 
             Some(*sum)
         })
         .collect();
-    let mut texels = vec![Texel::default(); layout.width as usize * layout.height as usize];
-    for photon in 0..photons {
-        let [pick, u, v] = [0, 1, 2].map(|k| shapes::hashed(3 * photon + k));
+    points.map(move |point| {
+        let [pick, u, v] = [0, 1, 2].map(|k| shapes::hashed(3 * point + k));
         let number = ends.partition_point(|end| *end <= pick * ends[ends.len() - 1]).min(triangles.len() - 1);
         let c = layout.corners[triangles[number].triangle as usize];
         let b = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }.map(|x| x as f32);
@@ -154,14 +153,25 @@ fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> 
         let f = (at - cell).clamp(Vec2::ZERO, Vec2::ONE);
         let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y];
         let [a, b, c] = weights.map(|weight| (UNITS as f32 * weight).round() as i64);
-        let first = cell.y as usize * layout.width as usize + cell.x as usize;
         let width = layout.width as usize;
-        for (texel, share) in
-            [first, first + 1, first + width, first + width + 1].into_iter().zip([a, b, c, UNITS - a - b - c])
-        {
-            texels[texel].sum += share;
-            texels[texel].squares += (share as f64 / UNITS as f64).powi(2);
-        }
+        let first = cell.y as usize * width + cell.x as usize;
+        [(first, a), (first + 1, b), (first + width, c), (first + width + 1, UNITS - a - b - c)]
+    })
+}
+
+/// A texel's sum of flux and of the squares of its shares.
+#[derive(Clone, Copy, Default)]
+struct Texel {
+    sum: i64,
+    squares: f64,
+}
+
+/// Lays photons on points spread evenly over the surface.
+fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> Vec<Texel> {
+    let mut texels = vec![Texel::default(); layout.width as usize * layout.height as usize];
+    for (texel, share) in even_points(layout, triangles, 0..photons).flatten() {
+        texels[texel].sum += share;
+        texels[texel].squares += (share as f64 / UNITS as f64).powi(2);
     }
     texels
 }
@@ -206,6 +216,47 @@ fn check_even_light(name: &str, object: &Object, layout: &MapLayout, photons: u3
         assert!((deviation - 1.0).abs() < spread, "{name}: {deviation} ± {spread} times the variance expected {place}");
     }
     assert!(counted > 500, "{name}: {counted} texels");
+    if covered.iter().filter(|&&covered| covered > 0.999).count() > 500 {
+        let is_border: Vec<bool> = covered.iter().map(|&covered| covered < 0.999).collect();
+        check_shown(name, layout, &triangles, &texels, &is_border);
+    }
+}
+
+/// What evenly lit surfaces show deviates no more near the borders of charts than inside: the mean square over places of the surface.
+fn check_shown(name: &str, layout: &MapLayout, triangles: &[WorldTriangle], texels: &[Texel], is_border: &[bool]) {
+    let tiles = MapTiles::dense(&MapLayout { layers: 1, ..layout.clone() });
+    let surfaces = texel_surfaces(&MapLayout { layers: 1, ..layout.clone() }, &tiles, triangles);
+    let flux: Vec<f64> = texels.iter().map(|texel| texel.sum as f64 / UNITS as f64).collect();
+    let areas: Vec<f64> = surfaces.iter().map(|texel| texel.area).collect();
+    let mean = flux.iter().sum::<f64>() / areas.iter().sum::<f64>();
+    let deviations = |welds: &Welds| {
+        let irradiance = welds.irradiance(&flux, &areas);
+        let mut sums = [[0.0; 3]; 2];
+        for place in even_points(layout, triangles, 1_000_000..1_300_000) {
+            let shown =
+                place.iter().map(|&(texel, share)| share as f64 / UNITS as f64 * irradiance[texel]).sum::<f64>();
+            let square = (shown / mean - 1.0).powi(2);
+            let sum = &mut sums[usize::from(place.iter().any(|&(texel, _)| is_border[texel]))];
+            *sum = [sum[0] + square, sum[1] + 1.0, square.max(sum[2])];
+        }
+        sums.map(|[sum, count, most]| [sum / count, most])
+    };
+    let [[inside, _], [border, most]] = deviations(&Welds::new(&tiles, &surfaces));
+    let [_, [rough, most_rough]] = deviations(&Welds::default());
+    println!(
+        "{name}: mean squared deviation {inside:.4} inside, {border:.4} near borders ({rough:.4} if texels stand alone), \
+         the largest {most:.2} ({most_rough:.2})"
+    );
+    // Scraps of a chart that is no texel large altogether have nothing to join.
+    let mut charts = BTreeMap::<u32, f32>::new();
+    for texel in &surfaces {
+        if let TexelChart::One(chart) = texel.chart {
+            *charts.entry(chart).or_default() += texel.covered;
+        }
+    }
+    let times = if charts.values().any(|covered| *covered < 0.4) { 2.8 } else { 1.2 };
+    assert!(border < times * inside, "{name}: {border} near borders, {inside} inside");
+    assert!(border < rough, "{name}: {border} near borders, {rough} as texels are");
 }
 
 fn check_shape(name: &str, mesh: Mesh, map_size: u32) {
@@ -399,6 +450,13 @@ proptest! {
         if !triangles.is_empty() {
             let deposited: i64 = lit_evenly(&layout, &triangles, 100).iter().map(|texel| texel.sum).sum();
             prop_assert_eq!(deposited, 100 * UNITS);
+            // Even light is even, however small the parts of charts that texels hold.
+            let tiles = MapTiles::dense(&layout);
+            let surfaces = texel_surfaces(&layout, &tiles, &triangles);
+            let areas: Vec<f64> = surfaces.iter().map(|texel| texel.area).collect();
+            let shown = Welds::new(&tiles, &surfaces).irradiance(&areas, &areas);
+            let is_even = |(value, area): (&f64, &f64)| *area <= 0.0 || (value - 1.0).abs() < 1e-6;
+            prop_assert!(shown.iter().zip(&areas).all(is_even));
         }
     }
 

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{
     facets::{Facets, NONE},
     growing::Charts,
-    overlap::{FlatTriangles, overlap_depth},
+    overlap::{FlatTriangles, MANY_BOXES, overlap_depth, shares_of_box},
     patches::Patches,
 };
 
@@ -15,10 +15,6 @@ const ROUGHNESS: f64 = 4.0;
 
 /// How much more area than its box a chart may have before it is halved unseen.
 const MOST_COVER: f64 = 1.5;
-/// Boxes of triangles over a place, in the mean, from which on it takes too long to compare triangles with all that are near: in fans of
-/// slivers.
-const MANY_BOXES: f64 = 64.0;
-
 /// What a check of a chart found.
 pub(super) enum Verdict {
     /// No overlap.
@@ -184,20 +180,6 @@ impl FlatChart {
         }
         removed
     }
-}
-
-/// The area of triangles, and that of the boxes around each, in shares of the box around all.
-fn shares_of_box(triangles: &[[DVec2; 3]]) -> (f64, f64) {
-    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-    let (mut area, mut boxes) = (0.0, 0.0);
-    for [a, b, c] in triangles {
-        let (own_low, own_high) = (a.min(*b).min(*c), a.max(*b).max(*c));
-        (low, high) = (low.min(own_low), high.max(own_high));
-        area += 0.5 * (*b - *a).perp_dot(*c - *a).abs();
-        boxes += (own_high - own_low).element_product();
-    }
-    let whole = (high - low).element_product().max(f64::MIN_POSITIVE);
-    (area / whole, boxes / whole)
 }
 
 /// Whether two edges come within a distance of each other, other than at an end that they have in common.

@@ -5,6 +5,9 @@ use rayon::prelude::*;
 
 /// Nodes of a level, or triangles, in a node of the next.
 const CHILDREN: usize = 8;
+/// Boxes of triangles over a place, in the mean, from which on it takes too long to compare triangles with all that are near: in fans of
+/// slivers.
+pub(super) const MANY_BOXES: f64 = 64.0;
 
 /// Triangles of a plane, found by place.
 ///
@@ -61,6 +64,20 @@ impl FlatTriangles {
         }
         false
     }
+}
+
+/// The area of triangles, and that of the boxes around each, in shares of the box around all.
+pub(super) fn shares_of_box(triangles: &[[DVec2; 3]]) -> (f64, f64) {
+    let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    let (mut area, mut boxes) = (0.0, 0.0);
+    for [a, b, c] in triangles {
+        let (own_low, own_high) = (a.min(*b).min(*c), a.max(*b).max(*c));
+        (low, high) = (low.min(own_low), high.max(own_high));
+        area += 0.5 * (*b - *a).perp_dot(*c - *a).abs();
+        boxes += (own_high - own_low).element_product();
+    }
+    let whole = (high - low).element_product().max(f64::MIN_POSITIVE);
+    (area / whole, boxes / whole)
 }
 
 fn bounds([a, b, c]: &[DVec2; 3]) -> Box2 {

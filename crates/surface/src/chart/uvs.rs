@@ -4,7 +4,7 @@ use diacaustic_scene::{Chart, Object, Scene};
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
-use super::overlap::{FlatTriangles, overlap_depth};
+use super::overlap::{FlatTriangles, MANY_BOXES, overlap_depth, shares_of_box};
 use crate::Error;
 
 /// Share of the covered plane's longer side by which triangles may lie in each other: what coordinates in single precision cannot say.
@@ -34,19 +34,9 @@ fn check_object(object: &Object) -> Result<(), Error> {
     let (low, high) =
         flat.iter().flatten().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
     let tolerance = TOLERANCE * (high - low).max_element().max(low.abs().max(high.abs()).max_element());
+    let is_dense = shares_of_box(&flat).1 > MANY_BOXES;
     let flat = FlatTriangles::new(flat);
-    let overlap = |k: usize, other: usize| overlap_depth(&flat.corners[k], &flat.corners[other]) > tolerance;
-    // The first triangle that overlaps a later one, and the first of those.
-    let overlapping = (0..has_area.len()).into_par_iter().find_map_first(|k| {
-        let mut first = usize::MAX;
-        flat.any_near(k, |other| {
-            if other > k && other < first && overlap(k, other) {
-                first = other;
-            }
-            false
-        });
-        (first != usize::MAX).then_some((k, first))
-    });
+    let overlapping = if is_dense { overlap_at_border(&flat, tolerance) } else { first_overlap(&flat, tolerance) };
     match overlapping {
         None => Ok(()),
         Some((k, other)) => Err(Error::OverlappingMapUvs {
@@ -55,6 +45,71 @@ fn check_object(object: &Object) -> Result<(), Error> {
             place: common_place(&flat.corners[k], &flat.corners[other]),
         }),
     }
+}
+
+/// The first triangle that overlaps a later one by more than `tolerance`, and the first of those.
+fn first_overlap(flat: &FlatTriangles, tolerance: f64) -> Option<(usize, usize)> {
+    (0..flat.corners.len()).into_par_iter().find_map_first(|k| {
+        let mut first = usize::MAX;
+        flat.any_near(k, |other| {
+            let is_earlier = other > k && other < first;
+            if is_earlier && overlap_depth(&flat.corners[k], &flat.corners[other]) > tolerance {
+                first = other;
+            }
+            false
+        });
+        (first != usize::MAX).then_some((k, first))
+    })
+}
+
+/// Two triangles that overlap by more than `tolerance`, one of them at the border of what is covered: for fans, whose triangles' boxes all lie in
+/// each other.
+///
+/// How many triangles cover a place changes only across edges that are not between two of them. Where it goes from two to less, such an edge is
+/// of a triangle that overlaps another there. Triangles too thin to overlap anything so far do not count.
+fn overlap_at_border(flat: &FlatTriangles, tolerance: f64) -> Option<(usize, usize)> {
+    let is_thick = |k: usize| {
+        let [a, b, c] = flat.corners[k];
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        (b - a).perp_dot(c - a).abs() > tolerance * longest
+    };
+    let thick: Vec<bool> = (0..flat.corners.len()).map(is_thick).collect();
+    border_edges(flat, &thick).into_par_iter().find_map_first(|(k, [a, b])| {
+        let mut found = None;
+        flat.any_in((a.min(b), a.max(b)), |other| {
+            let overlaps =
+                other != k && thick[other] && overlap_depth(&flat.corners[k], &flat.corners[other]) > tolerance;
+            if overlaps {
+                found = Some((k.min(other), k.max(other)));
+            }
+            overlaps
+        });
+        found
+    })
+}
+
+/// The edges of some triangles, each with its triangle, that are not between one of these and one on its other side.
+fn border_edges(flat: &FlatTriangles, counts: &[bool]) -> Vec<(usize, [DVec2; 2])> {
+    let mut edges: Vec<([u64; 4], bool, usize)> = Vec::new();
+    for k in (0..flat.corners.len()).filter(|&k| counts[k]) {
+        let [a, b, c] = flat.corners[k];
+        for (start, end, third) in [(a, b, c), (b, c, a), (c, a, b)] {
+            // Adding 0 makes −0 the same place as 0.
+            let bits = |p: DVec2| (p + 0.0).to_array().map(f64::to_bits);
+            let (low, high) = if bits(start) <= bits(end) { (start, end) } else { (end, start) };
+            let ([low_x, low_y], [high_x, high_y]) = (bits(low), bits(high));
+            edges.push(([low_x, low_y, high_x, high_y], (high - low).perp_dot(third - low) > 0.0, k));
+        }
+    }
+    edges.par_sort_unstable();
+    let is_border = |same: &&[([u64; 4], bool, usize)]| !matches!(same, [(_, false, _), (_, true, _)]);
+    let border = edges.chunk_by(|a, b| a.0 == b.0).filter(is_border).flatten();
+    border
+        .map(|&([low_x, low_y, high_x, high_y], _, k)| {
+            let place = |x: u64, y: u64| DVec2::new(f64::from_bits(x), f64::from_bits(y));
+            (k, [place(low_x, low_y), place(high_x, high_y)])
+        })
+        .collect()
 }
 
 fn middle([a, b, c]: &[DVec2; 3]) -> [f64; 2] {
@@ -153,6 +208,39 @@ mod tests {
     fn twice_the_same_place_is_found() {
         let overlap = checked(Mesh::cuboid(Vec3::ZERO, Vec3::ONE));
         assert!(matches!(overlap, Err(Error::OverlappingMapUvs { triangles: [0, 2], .. })), "{overlap:?}");
+    }
+
+    /// A disk of slivers around its middle that goes around some times.
+    fn fan(slivers: u32, turns: f32) -> Mesh {
+        let mut mesh = Mesh { positions: vec![Vec3::ZERO], uvs: vec![Vec2::ZERO], ..Mesh::default() };
+        for k in 0..=slivers {
+            let closes = turns == 1.0 && k == slivers;
+            let angle = if closes { 0.0 } else { std::f32::consts::TAU * turns * k as f32 / slivers as f32 };
+            mesh.uvs.push(Vec2::from_angle(angle));
+            mesh.positions.push(mesh.uvs[k as usize + 1].extend(angle));
+            mesh.triangles.extend((k > 0).then_some([0, k, k + 1]));
+        }
+        mesh
+    }
+
+    #[test]
+    fn fans_are_checked_at_their_borders() {
+        checked(fan(100_000, 1.0)).unwrap();
+        checked(fan(20_000, 0.9)).unwrap();
+        for overlapping in [fan(20_000, 1.1), fan(5_000, 2.0)] {
+            let found = checked(overlapping);
+            assert!(matches!(found, Err(Error::OverlappingMapUvs { .. })), "{found:?}");
+        }
+        // A triangle in the middle of a fan, which touches no border of that.
+        let mut mesh = fan(20_000, 1.0);
+        let first = mesh.positions.len() as u32;
+        for corner in [[0.3, 0.2], [0.34, 0.2], [0.3, 0.23]] {
+            mesh.uvs.push(corner.into());
+            mesh.positions.push(Vec2::from(corner).extend(1.0));
+        }
+        mesh.triangles.push([first, first + 1, first + 2]);
+        let found = checked(mesh);
+        assert!(matches!(found, Err(Error::OverlappingMapUvs { triangles: [_, 20_000], .. })), "{found:?}");
     }
 
     #[test]
