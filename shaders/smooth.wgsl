@@ -1,9 +1,10 @@
 // Irradiance is smoothed where the surroundings of texels differ by no more than the noise of their photons: one step of an edge-avoiding filter
-// "with holes" (Dammertz et al. 2010), whose kernel doubles from step to step. Texels exchange flux in pairs. docs/energy-maps.md, "Filter".
+// "with holes" (Dammertz et al. 2010), whose kernel doubles from step to step. Texels exchange flux in pairs. docs/energy-maps.md, "Filter". In scenes
+// with dispersion that do not ask for it, only hues are mixed: "Hues" there.
 
 import package::film::texels::tile_at;
 import package::film::welds::{between_welds, load_map_texel};
-import package::layout::features::light_group_count;
+import package::layout::features::{light_group_count, mixes_hues};
 import package::layout::map_passes::{texel_irradiance, welded, welds, MapTexel};
 import package::layout::records::{load_map_layer, record_texel};
 import package::layout::scene::NONE;
@@ -12,6 +13,8 @@ import package::layout::smooth_pass::{map_tiles, rough_irradiance, smooth_params
 /// How much the squared difference of two texels' guides may exceed the sum of the texels' variances for 1/e of the exchange. Half of what single
 /// photons make of texels goes on the way to the guides.
 const TOLERANCE: f32 = 6.0;
+/// Luminance of linear Rec. 709.
+const LUMINANCE: vec3<f32> = vec3<f32>(0.2126, 0.7152, 0.0722);
 /// Weight of a texel itself in its guide.
 const OWN_KERNEL: f32 = 0.25;
 /// A difference of places, in cells, that is rounding.
@@ -30,6 +33,9 @@ struct Neighbour {
 /// What a texel of some area holds. Without guides it is its own.
 fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
     let first = (1u + light_group_count) * texel;
+    if mixes_hues {
+        return Neighbour(vec4<f32>(0.0), textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
+    }
     let guides = select(smooth_params.first_guide, 0u, smooth_params.makes_guide != 0u);
     let guide = textureLoad(rough_irradiance, record_texel(guides + first), 0);
     let irradiance = textureLoad(rough_irradiance, record_texel(first + entry), 0).xyz;
@@ -108,6 +114,27 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
     (*exchange).around += kernel * other.own.w * other.area;
 }
 
+/// Adds an exchange of hue: either gives as much as the other takes, by the smaller flux of luminance, and keeps its luminance.
+fn exchange_hue_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
+    let own = dot(texel.own.xyz, LUMINANCE);
+    let others = dot(other.own.xyz, LUMINANCE);
+    if own <= 0.0 || others <= 0.0 {
+        return;
+    }
+    let kernel = select(0.0625, 0.125, (k & 1u) == 1u);
+    let weight = kernel * min(others * other.area / (own * texel.area), 1.0);
+    (*exchange).change += weight * (other.own.xyz * (own / others) - texel.own.xyz);
+}
+
+/// Adds what neighbour k changes.
+fn meet(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
+    if mixes_hues {
+        exchange_hue_with(exchange, k, texel, other);
+    } else {
+        exchange_with(exchange, k, texel, other);
+    }
+}
+
 /// A texel's guide: what is on and around it.
 fn guide_of(texel: Neighbour, exchange: Exchange) -> vec4<f32> {
     let own = OWN_KERNEL * texel.area;
@@ -141,7 +168,7 @@ fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
         }
         let other = texel_neighbour(tile.first_texel + u32(at.y) * columns + u32(at.x), record.chart, entry);
         if k != 4u && other.area > 0.0 {
-            exchange_with(&exchange, k, texel, other);
+            meet(&exchange, k, texel, other);
         }
     }
     while beyond != 0u {
@@ -151,8 +178,11 @@ fn smoothed(index: u32, record: MapTexel, entry: u32) -> vec4<f32> {
         let place = vec2<f32>(tile.origin_x, tile.origin_y) + vec2<f32>(at) * vec2<f32>(tile.cell_x, tile.cell_y);
         let other = place_neighbour(tile.layer, place, record.chart, entry);
         if other.area > 0.0 {
-            exchange_with(&exchange, k, texel, other);
+            meet(&exchange, k, texel, other);
         }
+    }
+    if mixes_hues {
+        return vec4<f32>(texel.own.xyz + exchange.change, texel.own.w);
     }
     if smooth_params.makes_guide != 0u {
         return guide_of(texel, exchange);
@@ -175,8 +205,15 @@ fn smooth_maps(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     }
     let record = load_map_texel(texel);
     let entries = 1u + light_group_count;
-    for (var entry = 0u; entry < entries; entry++) {
-        let value = smoothed(texel, record, entry);
+    // Hues of groups are mixed one by one, so that all light, the first entry, is their sum.
+    var sum = vec4<f32>(0.0);
+    for (var k = 1u; k <= entries; k++) {
+        let entry = entries - k;
+        var value = sum;
+        if !mixes_hues || entry > 0u || entries == 1u {
+            value = smoothed(texel, record, entry);
+            sum += value;
+        }
         if is_weld {
             welded[entries * index + entry] = value;
         } else {

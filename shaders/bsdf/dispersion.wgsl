@@ -2,7 +2,7 @@
 
 import package::bsdf::fresnel::refraction;
 import package::medium::media::{medium_colored_ior, medium_ior};
-import package::spectrum::wavelength::{draw_wavelength, Wavelength};
+import package::spectrum::wavelength::{all_wavelengths, draw_wavelength};
 
 /// The greatest number below 1.
 const BELOW_1: f32 = 0.99999994;
@@ -27,7 +27,7 @@ fn reflectance(cos_i: f32, eta: f32) -> f32 {
 /// wavelength, both by the number `xi`, so that the wavelengths of what is refracted stay evenly spread. Of a rough surface and of a way out into a
 /// thinner medium the wavelength comes first, and `u` chooses.
 fn split_colors(media: vec4<u32>, beyond: vec4<u32>, cos_i: f32, is_smooth: bool, u: f32, xi: f32) -> ColorSplit {
-    let colored = Wavelength(-1.0, vec3<f32>(0.0));
+    let colored = all_wavelengths();
     let stated = medium_ior(media, colored) / medium_ior(beyond, colored);
     if !is_smooth || stated >= 1.0 {
         return ColorSplit(u, xi, vec3<f32>(1.0), true);

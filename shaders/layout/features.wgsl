@@ -29,6 +29,8 @@ override photon_light_kind: u32 = 0u;
 override has_footprints: bool = true;
 /// Whether the squares of what photons bring are summed.
 override has_squares: bool = true;
+/// Whether the filter of maps mixes hues alone.
+override mixes_hues: bool = false;
 /// Whether a guide moves photons.
 override has_guide: bool = true;
 /// Whether light follows the 2016 paper's model, and how it turns at glass: one of the PAPER_ constants.

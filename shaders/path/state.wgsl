@@ -1,10 +1,11 @@
 // A path of light, followed from where it is seen toward the lights.
 
 import package::film::layers::{add_to_group, add_to_layer};
+import package::layout::features::notes_sightings;
 import package::layout::path_pass::{path_params, Sighting, LAYER_EMISSION, LAYER_INDIRECT};
 import package::layout::scene::NONE;
 import package::medium::media::medium_ior;
-import package::spectrum::wavelength::{at_wavelength, draw_wavelength, Wavelength};
+import package::spectrum::wavelength::{all_wavelengths, at_wavelength, draw_wavelength, turned_as, Wavelength};
 
 /// Slot of the padded number of a tail's wavelength.
 const SLOT_TAIL: u32 = 3072u;
@@ -84,10 +85,15 @@ fn no_sighting() -> Sighting {
 
 /// Gives a path one wavelength.
 fn take_wavelength(path: ptr<function, Path>) {
+    // What a matt surface gathers from everywhere shows no single wavelengths: a color would be noise in the cache.
+    if notes_sightings && (*path).sighting.inverse_distance >= 0.0 {
+        (*path).wavelength = turned_as((*path).fifth_number);
+        return;
+    }
     let drawn = draw_wavelength((*path).fifth_number);
     (*path).wavelength = drawn.wavelength;
     // The exposure has divided by the square of the stated index where the camera stands.
-    let stated = medium_ior(path_params.media, Wavelength(-1.0, vec3<f32>(0.0)));
+    let stated = medium_ior(path_params.media, all_wavelengths());
     let index = stated / medium_ior(path_params.media, drawn.wavelength);
     (*path).beta = at_wavelength((*path).beta, drawn.wavelength) * drawn.weight * (index * index);
 }

@@ -9,6 +9,8 @@ struct Wavelength {
     number: f32,
     /// The values there of the primaries' spectra.
     primaries: vec3<f32>,
+    /// Whether light is turned as of this wavelength and keeps its colors all the same.
+    keeps_colors: bool,
 }
 
 /// A wavelength, with the color of white light of this wavelength over the density with which it is drawn.
@@ -20,18 +22,28 @@ struct DrawnWavelength {
 /// The wavelength with which all light of the scene begins.
 fn first_wavelength() -> Wavelength {
     if !has_dispersion {
-        return Wavelength(-1.0, vec3<f32>(0.0));
+        return all_wavelengths();
     }
     let number = load_fixed_wavelength();
     if number < 0.0 {
-        return Wavelength(-1.0, vec3<f32>(0.0));
+        return all_wavelengths();
     }
     return draw_wavelength(number).wavelength;
 }
 
+/// Light as red, green and blue.
+fn all_wavelengths() -> Wavelength {
+    return Wavelength(-1.0, vec3<f32>(0.0), true);
+}
+
+/// Light of all colors that is turned as that of the wavelength of a number.
+fn turned_as(number: f32) -> Wavelength {
+    return Wavelength(number, vec3<f32>(0.0), true);
+}
+
 fn draw_wavelength(number: f32) -> DrawnWavelength {
     let color = load_color_of_wavelength(number);
-    return DrawnWavelength(Wavelength(number, color.primaries), color.weight);
+    return DrawnWavelength(Wavelength(number, color.primaries, false), color.weight);
 }
 
 /// What a color counts for at a wavelength: its spectrum there.
@@ -39,5 +51,5 @@ fn at_wavelength(color: vec3<f32>, wavelength: Wavelength) -> vec3<f32> {
     if !has_dispersion {
         return color;
     }
-    return select(color, vec3<f32>(dot(color, wavelength.primaries)), wavelength.number >= 0.0);
+    return select(vec3<f32>(dot(color, wavelength.primaries)), color, wavelength.keeps_colors);
 }

@@ -238,3 +238,48 @@ fn dispersion_splits_white_light_and_the_ledger_closes() {
     let negative = (0..map.sums.len()).filter(|&texel| map.flux(texel).min_element() < 0.0).count();
     assert!(negative > 0, "no colour beyond what three lights can show");
 }
+
+/// Flux in each channel that the irradiance of a map stands for, W, and Σ of a squared error against a map that is more exact.
+fn flux_shown(map: &EnergyMap) -> DVec3 {
+    (0..map.areas.len()).map(|texel| map.irradiance(texel) * f64::from(map.areas[texel])).sum()
+}
+
+#[test]
+fn mixed_hues_keep_brightness_and_flux_and_have_less_noise() {
+    let map = |photons, settings: &str| {
+        let scene = ball(Dispersion::Abbe(30.0), settings);
+        emit(&scene, photons).energy_map(1).unwrap().unwrap()
+    };
+    let (mixed, plain) = (map(1 << 15, ""), map(1 << 15, "hue_filter = false"));
+    assert_eq!(mixed.sums, plain.sums);
+    let (shown, held) = (flux_shown(&mixed), flux_shown(&plain));
+    assert!(((shown - held) / held).abs().max_element() < 1e-5, "{shown} W of {held} W");
+    let luminance = DVec3::new(0.2126, 0.7152, 0.0722);
+    let exact = map(1 << 21, "hue_filter = false");
+    let mut errors = [0.0; 2];
+    for texel in 0..plain.areas.len() {
+        let (shown, held) = (mixed.irradiance(texel), plain.irradiance(texel));
+        let brightness = luminance.dot(held);
+        assert!((luminance.dot(shown) - brightness).abs() <= 1e-4 * brightness.abs().max(1e-3), "texel {texel}");
+        errors[0] += (shown - exact.irradiance(texel)).length_squared();
+        errors[1] += (held - exact.irradiance(texel)).length_squared();
+    }
+    assert!(errors[0] < 0.6 * errors[1], "squared errors {} with mixed hues, {} without", errors[0], errors[1]);
+}
+
+#[test]
+fn bounced_light_in_the_cache_has_no_colours_of_single_wavelengths() {
+    // All is gray but for single wavelengths.
+    let mut scene = ball(FORMAL, "samples = 1, irradiance_cache = true");
+    scene.background = Vec3::ONE;
+    scene.lights.clear();
+    let film = render(&scene);
+    let colored = |pixel: &&[f32; 3]| {
+        let [low, high] = [f32::min, f32::max].map(|choose| pixel.iter().copied().reduce(choose).unwrap());
+        high - low > 0.01 * high
+    };
+    // Pixels that show the ball see one wavelength each; the floor sees what the cache holds, and what passes it by where it is not believed.
+    let share = film.radiance.iter().filter(colored).count() as f64 / film.radiance.len() as f64;
+    println!("{share} of the pixels are coloured");
+    assert!(share < 0.5, "{share} of the pixels are coloured");
+}

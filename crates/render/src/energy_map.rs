@@ -49,7 +49,7 @@ impl EnergyMap {
         DVec3::from(self.sums[texel].map(|sum| sum as f64)) / (self.units_per_watt * photons as f64)
     }
 
-    /// Irradiance of a texel as the picture shows it, W/m²: smoothed if the scene asks for it. 0 where it holds no surface. In the profile
+    /// Irradiance of a texel as the picture shows it, W/m²: smoothed, or with mixed hues, where the scene asks for it. 0 where it holds no surface. In the profile
     /// `paper`, energy over the map's size.
     ///
     /// # Panics

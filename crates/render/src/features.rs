@@ -46,6 +46,8 @@ pub(crate) struct Features {
     footprints: bool,
     /// Whether the squares of what photons bring are summed.
     squares: bool,
+    /// Whether the filter of maps mixes hues alone.
+    mixes_hues: bool,
     /// The 2016 paper's model of light, and how it refracts.
     paper_refraction: u32,
     /// Whether camera paths note which texels they see.
@@ -84,6 +86,7 @@ impl Features {
             guide: false,
             footprints: false,
             squares: false,
+            mixes_hues: false,
             paper_refraction: paper_constant(&scene.settings),
             sightings: false,
             irradiance_cache: scene.keeps_irradiance_cache(),
@@ -118,9 +121,9 @@ impl Features {
         Self { light_layers: false, data_layers: false, light_groups: 0, ..sightings }
     }
 
-    /// What the filter of energy maps needs.
-    pub fn for_filter(self) -> Self {
-        Self { light_groups: self.light_groups, ..Self::default() }
+    /// What the filter of energy maps needs, which may mix hues alone.
+    pub fn for_filter(self, mixes_hues: bool) -> Self {
+        Self { light_groups: self.light_groups, mixes_hues, ..Self::default() }
     }
 
     /// The same for paths that begin at a lightmap's texels.
@@ -146,6 +149,7 @@ impl Features {
             ("has_guide", f64::from(self.guide)),
             ("has_footprints", f64::from(self.footprints)),
             ("has_squares", f64::from(self.squares)),
+            ("mixes_hues", f64::from(self.mixes_hues)),
             ("paper_refraction", f64::from(self.paper_refraction)),
             ("notes_sightings", f64::from(self.sightings)),
             ("has_irradiance_cache", f64::from(self.irradiance_cache)),

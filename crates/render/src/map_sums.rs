@@ -1,6 +1,6 @@
 //! Energy maps on the device: the sums that photons fill, and the irradiance that follows from them.
 
-use diacaustic_scene::RenderSettings;
+use diacaustic_scene::Scene;
 use diacaustic_shaders::{RECORDS_WIDTH_BITS, RESOLVE, ResolveParams, SMOOTH, SmoothParams, WORKGROUP_SIZE};
 
 use crate::{
@@ -25,8 +25,10 @@ const GROUP_SUMS: Purpose = Purpose {
     remedy: "lower map_size, or keep fewer light groups apart",
 };
 const IRRADIANCE: Purpose = Purpose { what: "the texels' irradiance", remedy: "lower map_size" };
-const FILTERED: Purpose =
-    Purpose { what: "the texels' filtered irradiance", remedy: "lower map_size or set map_filter = false" };
+const FILTERED: Purpose = Purpose {
+    what: "the texels' filtered irradiance",
+    remedy: "lower map_size, or set map_filter = false and hue_filter = false",
+};
 const WELDED: Purpose = Purpose { what: "irradiance where tiles meet", remedy: "lower map_budget" };
 
 /// What is summed for each texel.
@@ -36,14 +38,22 @@ pub(crate) struct SumsFormat {
     pub groups: u64,
     /// Whether there are sums of squares too, for the filter.
     pub has_squares: bool,
+    /// Whether hues are mixed.
+    pub mixes_hues: bool,
 }
 
 impl SumsFormat {
     /// That of no maps.
-    pub const NONE: Self = Self { groups: 1, has_squares: false };
+    pub const NONE: Self = Self { groups: 1, has_squares: false, mixes_hues: false };
 
-    pub fn new(settings: &RenderSettings, groups: usize) -> Self {
-        Self { groups: groups as u64, has_squares: settings.map_filter }
+    pub fn new(scene: &Scene, groups: usize) -> Self {
+        let settings = &scene.settings;
+        let has_hues = scene.has_dispersion() && settings.wavelength.is_none();
+        Self {
+            groups: groups as u64,
+            has_squares: settings.map_filter,
+            mixes_hues: has_hues && settings.hue_filter && !settings.map_filter,
+        }
     }
 
     /// 64-bit sums of a texel.
@@ -54,6 +64,15 @@ impl SumsFormat {
     /// Bytes of a texel's sums.
     pub fn bytes(self) -> u64 {
         8 * self.sums()
+    }
+
+    /// Textures of irradiance.
+    fn textures(self) -> u64 {
+        match (self.has_squares, self.mixes_hues) {
+            (true, _) => 3,
+            (false, true) => 2,
+            (false, false) => 1,
+        }
     }
 
     /// Bytes of a texel in each of the two buffers: of low and of high words.
@@ -78,7 +97,7 @@ impl SumsFormat {
     /// Bytes that a texel takes on the device: its sums, its record and its irradiance, and what the filter of that needs.
     pub fn bytes_on_device(self) -> u64 {
         let irradiance = 16 * self.entries();
-        self.groups * self.bytes() + 16 + irradiance * if self.has_squares { 3 } else { 1 }
+        self.groups * self.bytes() + 16 + irradiance * self.textures()
     }
 }
 
@@ -177,7 +196,11 @@ impl ResolvePass {
             gpu.dispatch(&self.resolve, &[of.scene, &maps.targets[0].written, &maps.resolve_group], size);
         }
         if let Some(filter) = maps.filter.as_ref().filter(|_| of.photons > 0) {
-            (0..FILTER_STEPS).for_each(|step| filter.step(gpu, maps, of, step));
+            if maps.format.mixes_hues {
+                hue_steps(of.photons).iter().for_each(|distances| filter.mix_hues(gpu, maps, of.scene, *distances));
+            } else {
+                (0..FILTER_STEPS).for_each(|step| filter.step(gpu, maps, of, step));
+            }
         }
     }
 }
@@ -207,15 +230,36 @@ impl Filter {
         let variance_factor = if step == 0 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
         let guide = SmoothParams { makes_guide: 1, averages_variance: u32::from(step == 0), ..template };
         let smooth = SmoothParams { distance: 1 << step, variance_factor, ..template };
-        for (from, params) in [guide, smooth].into_iter().enumerate() {
+        self.forth_and_back(gpu, maps, of.scene, [guide, smooth]);
+    }
+
+    /// Mixes hues over texels so far apart, twice.
+    fn mix_hues(&self, gpu: &Gpu, maps: &EnergyMaps, scene: &wgpu::BindGroup, distances: [i32; 2]) {
+        let params = distances.map(|distance| SmoothParams { distance, ..Default::default() });
+        self.forth_and_back(gpu, maps, scene, params);
+    }
+
+    /// A pass from the first target to the second, and one back.
+    fn forth_and_back(&self, gpu: &Gpu, maps: &EnergyMaps, scene: &wgpu::BindGroup, passes: [SmoothParams; 2]) {
+        for (from, params) in passes.into_iter().enumerate() {
             for (of_welds, count) in maps.dispatches() {
                 let size = workgroups(count);
                 let params = SmoothParams { count: count as u32, groups_x: size[0], of_welds, ..params };
                 gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(&params));
-                let groups = [of.scene, &maps.targets[1 - from].written, &self.read[from]];
+                let groups = [scene, &maps.targets[1 - from].written, &self.read[from]];
                 gpu.dispatch(&self.pipeline, &groups, size);
             }
         }
+    }
+}
+
+/// Distances over which hues are mixed, cells: less and less as photons grow.
+fn hue_steps(photons: u64) -> &'static [[i32; 2]] {
+    match photons {
+        0..0x40_0000 => &[[1, 2], [4, 2]],
+        0x40_0000..0x100_0000 => &[[1, 2]],
+        0x100_0000..0x400_0000 => &[[1, 1]],
+        _ => &[],
     }
 }
 
@@ -263,11 +307,11 @@ impl EnergyMaps {
             Ok::<_, Error>(Target { texture, view, written })
         };
         let mut targets = vec![target(IRRADIANCE, 1)?];
-        if format.has_squares {
-            targets.push(target(FILTERED, 2)?);
+        if format.textures() > 1 {
+            targets.push(target(FILTERED, format.textures() - 1)?);
         }
         let filter = if let [first, second] = targets.as_slice() {
-            let pipeline = pass.smooth.get(gpu, features.for_filter());
+            let pipeline = pass.smooth.get(gpu, features.for_filter(format.mixes_hues));
             Some(Filter::new(gpu, pass, pipeline, &texels.tiles, [first, second]))
         } else {
             None
@@ -292,6 +336,11 @@ impl EnergyMaps {
     /// The dispatches of a pass over all texels: whether over welds, and over how many. Those over welds come first.
     fn dispatches(&self) -> impl Iterator<Item = (u32, u64)> {
         [(1, self.weld_count), (0, self.texel_count)].into_iter().filter(|&(_, count)| count > 0)
+    }
+
+    /// Whether irradiance is more than sums over areas.
+    pub fn is_filtered(&self) -> bool {
+        self.filter.is_some()
     }
 
     /// Entries of irradiance of all texels.
@@ -352,7 +401,7 @@ impl EnergyMaps {
             unsmoothed: Vec::new(),
         };
         map.resolve();
-        if self.format.has_squares {
+        if self.filter.is_some() {
             let entries = self.format.entries();
             let range = entries * placement.first_texel..entries * (placement.first_texel + count);
             let texels: Vec<[f32; 4]> = gpu.read_texels(&self.targets[0].texture, range)?;
@@ -377,5 +426,18 @@ impl EnergyMaps {
             }
         }
         Ok(sums)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hues_are_mixed_less_and_less_as_photons_grow() {
+        let reach = |photons| hue_steps(photons).as_flattened().iter().map(|distance| distance * distance).sum::<i32>();
+        let reaches: Vec<i32> = (0..34).map(|bits| reach(1 << bits)).collect();
+        assert!(reaches.is_sorted_by(|a, b| a >= b) && reaches[0] > 0, "{reaches:?}");
+        assert_eq!(reaches[26], 0);
     }
 }

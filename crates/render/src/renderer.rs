@@ -258,7 +258,7 @@ impl Renderer {
             around: host.around,
         };
         let groups = host.lights.groups.names.len();
-        let format = SumsFormat::new(&scene.settings, groups);
+        let format = SumsFormat::new(scene, groups);
         let mut photons = Photons::new(gpu, &mut self.photon_pass, &photons_of, self.loop_limit)?;
         let mut samples = Samples::new(gpu, &mut self.camera_pass, scene, &host.lights, host.features)?;
         let (mut sightings, mut flights) = (Sightings::default(), Flights::default());
@@ -421,7 +421,7 @@ impl Renderer {
             return Err(Error::NoSuchObject { index: object, count });
         }
         let units = on_device.photons.units_per_watt;
-        if on_device.unresolved && on_device.scene.settings.map_filter {
+        if on_device.unresolved && on_device.maps.is_filtered() {
             on_device.run(&self.gpu, &self.resolve_pass);
         }
         on_device.maps.read(&self.gpu, object, units, on_device.photon_count)

@@ -108,6 +108,8 @@ pub struct RenderSettings {
     pub guiding: bool,
     /// Whether photons lay their flux over the part of the map that neighbouring photons leave open, and not over four texels.
     pub footprints: bool,
+    /// Whether hues of energy maps are mixed where single wavelengths make them.
+    pub hue_filter: bool,
     /// Whether the irradiance of energy maps is smoothed where it differs by no more than photons' noise.
     pub map_filter: bool,
     /// Whether light that bounces to receivers is measured by a few camera paths and shared by all others; if none, by renders that choose their
@@ -172,6 +174,7 @@ impl Default for RenderSettings {
             max_bounces: 8,
             guiding: true,
             footprints: false,
+            hue_filter: true,
             map_filter: false,
             irradiance_cache: None,
             map_size: None,

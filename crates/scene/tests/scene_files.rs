@@ -44,7 +44,7 @@ fn every_key_is_read() {
         background = [0.1, 0.2, 0.3]
         ambient = 0.5
         camera = { position = [1, 2, 3], look_at = [1, 2, 0], up = [1, 0, 0], vertical_fov = 30, aperture_radius = 0.1, focus_distance = 2 }
-        render = { width = 3, height = 4, samples = 5, photons = 6, target_error = 0.25, seed = 7, max_depth = 8, max_bounces = 0, guiding = false, footprints = true, map_filter = true, irradiance_cache = false, map_size = 9, map_budget = 64, filter = "blackman-harris", wavelength = 550 }
+        render = { width = 3, height = 4, samples = 5, photons = 6, target_error = 0.25, seed = 7, max_depth = 8, max_bounces = 0, guiding = false, footprints = true, hue_filter = false, map_filter = true, irradiance_cache = false, map_size = 9, map_budget = 64, filter = "blackman-harris", wavelength = 550 }
         output = { files = ["a.png", "/b/c.EXR"], exposure = -1, tone = "plain", layers = ["depth", "caustic"] }
         lights = [{ type = "sphere", name = "sun", center = [5, 6, 7], radius = 2, flux = [1, 2, 3] }]
         objects = [{ name = "crate", box = { min = [0, 0, 0], max = [1, 2, 3] }, material = "m", translate = [10, 0, 0], rotate = [90, 0, 90], scale = [1, 2, 1], map_size = 16 }]
@@ -71,6 +71,7 @@ fn every_key_is_read() {
         max_bounces: 0,
         guiding: false,
         footprints: true,
+        hue_filter: false,
         map_filter: true,
         irradiance_cache: Some(false),
         map_size: Some(9),

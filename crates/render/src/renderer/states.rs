@@ -89,6 +89,7 @@ impl OnDevice {
         fingerprint.say("list of layers", format!("{:?}", self.scene.output.layers));
         fingerprint.extend(&self.buffers.fingerprint);
         fingerprint.say("map_filter", self.scene.settings.map_filter);
+        fingerprint.say("hue_filter", self.scene.settings.hue_filter);
         fingerprint.say("list of features", format!("{:?}", self.features));
         self.photons.add_to(&mut fingerprint);
         self.samples.add_to(&mut fingerprint);
