@@ -69,6 +69,7 @@ def draw(runs, path):
     import matplotlib
 
     matplotlib.use("Agg")
+    matplotlib.rcParams["svg.fonttype"] = "none"
     from matplotlib import pyplot
 
     counts = [run["size"]["triangles"] for run in runs]
