@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a scene costs over its number of triangles: seconds of each phase, memory, rays a second.
 
-    benches/race/scene_size.py [--triangles 10000,100000,1000000,10000000] [--folder FOLDER] [--plot FILE.svg] [--program target/release/diacaustic]
+    benches/race/scene_size.py [--triangles 10000,100000,1000000,10000000] [--folder FOLDER] [--plot FILE.png] [--program target/release/diacaustic]
 
 Needs target/release/diacaustic (cargo build --release) and `pip install numpy matplotlib`. Writes a bumpy ball of glass for each number into the folder (180 MB for ten million
 triangles; a temporary one that is removed, if left out), renders it over a floor under a small lamp, and prints a table in Markdown.
@@ -69,15 +69,14 @@ def draw(runs, path):
     import matplotlib
 
     matplotlib.use("Agg")
-    matplotlib.rcParams["svg.fonttype"] = "none"
     from matplotlib import pyplot
 
     counts = [run["size"]["triangles"] for run in runs]
-    figure, (time, memory, rate) = pyplot.subplots(1, 3, figsize=(13, 3.8))
+    figure, (time, memory, rate) = pyplot.subplots(1, 3, figsize=(12, 3.8))
     for phase in PHASES:
         time.loglog(counts, [max(run["seconds"][phase], 1e-3) for run in runs], "o-", label=phase, linewidth=1, markersize=4)
     time.loglog(counts, [first_photon(run["seconds"]) for run in runs], "ks-", label="to the first photon")
-    time.set(ylabel="seconds")
+    time.set(ylabel="seconds", ylim=(5e-3, 1e3))
     memory.loglog(counts, [run["peak"] / 1e6 for run in runs], "s-", label="peak of the process")
     memory.loglog(counts, [run["size"]["device_bytes"] / 1e6 for run in runs], "o-", label="on the device")
     memory.set(ylabel="MB")
@@ -89,7 +88,7 @@ def draw(runs, path):
         panel.grid(True, which="both", alpha=0.2)
         panel.legend(fontsize=8)
     figure.tight_layout()
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=100)
 
 
 def main():
