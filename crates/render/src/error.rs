@@ -13,6 +13,14 @@ pub enum Error {
     /// The scene's surfaces cannot be prepared.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
+    /// The scene has more triangles than a texture of the device holds.
+    #[error("the scene has {triangles} triangles and the device's textures hold {limit}: use fewer triangles")]
+    TooManyTriangles {
+        /// Triangles of the scene, surfaces of lights among them.
+        triangles: usize,
+        /// How many the device holds.
+        limit: usize,
+    },
     /// A buffer is larger than the device allows.
     #[error("{what} need {asked} bytes in one buffer and the device allows {available}: {remedy}")]
     BufferTooLarge {

@@ -175,6 +175,11 @@ impl Gpu {
         Ok(texture)
     }
 
+    /// Bytes that a texture of records may have.
+    pub fn most_record_bytes(&self) -> u64 {
+        u64::from(self.device.limits().max_texture_dimension_2d) * (16 << RECORDS_WIDTH_BITS)
+    }
+
     /// A zeroed texture of at least `count` texels of 16 bytes, in rows of 2^`RECORDS_WIDTH_BITS`.
     pub fn texels(
         &self,
@@ -184,9 +189,8 @@ impl Gpu {
         count: u64,
     ) -> Result<wgpu::Texture, Error> {
         let height = count.div_ceil(1 << RECORDS_WIDTH_BITS).max(1);
-        let limit = u64::from(self.device.limits().max_texture_dimension_2d);
-        if height > limit {
-            let available = limit * (16 << RECORDS_WIDTH_BITS);
+        let available = self.most_record_bytes();
+        if height * (16 << RECORDS_WIDTH_BITS) > available {
             return Err(Error::BufferTooLarge {
                 what: purpose.what,
                 asked: 16 * count,

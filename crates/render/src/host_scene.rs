@@ -35,13 +35,16 @@ pub(crate) struct HostScene {
 }
 
 impl HostScene {
-    /// Builds all of it.
-    pub fn build(scene: &Scene) -> Result<Self, Error> {
+    /// Builds all of it, if the scene has no more triangles than the device holds.
+    pub fn build(scene: &Scene, most_triangles: usize) -> Result<Self, Error> {
         let start = Instant::now();
         let mut triangles = world_triangles(scene);
-        separate_touching(scene, &mut triangles);
         let of_objects = triangles.len();
         triangles.extend(light_surfaces(scene));
+        if triangles.len() > most_triangles {
+            return Err(Error::TooManyTriangles { triangles: triangles.len(), limit: most_triangles });
+        }
+        separate_touching(scene, &mut triangles[..of_objects]);
         let bvh = Bvh::build(&triangles)?;
         let bvh_time = start.elapsed();
 
@@ -71,8 +74,32 @@ impl HostScene {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use diacaustic_scene::parse_scene;
     use diacaustic_shaders::CAMERA;
     use diacaustic_surface::RAY_OFFSET;
+
+    use super::*;
+
+    #[test]
+    fn more_triangles_than_the_device_holds_are_refused() {
+        let text = "camera = { position = [0, 2, 3], look_at = [0, 0, 0], vertical_fov = 40 }
+             materials.floor = { type = \"diffuse\", albedo = 0.5 }
+             [[lights]]
+             type = \"rectangle\"
+             center = [0, 2, 0]
+             edge_u = [1, 0, 0]
+             edge_v = [0, 0, 1]
+             flux = 1
+             [[objects]]
+             rectangle = { center = [0, 0, 0], edge_u = [4, 0, 0], edge_v = [0, 0, -4] }
+             material = \"floor\"";
+        let scene = parse_scene(text, Path::new("."), "test").unwrap_or_else(|error| panic!("{error}")).scene;
+        assert_eq!(HostScene::build(&scene, 4).unwrap().triangles, 2);
+        let error = HostScene::build(&scene, 3).unwrap_err();
+        assert!(matches!(error, Error::TooManyTriangles { triangles: 4, limit: 3 }), "{error}");
+    }
 
     #[test]
     fn touching_is_measured_in_the_kernels_ray_offsets() {

@@ -201,7 +201,8 @@ impl Renderer {
     /// If the scene is not valid, or too large for the device; the scene set before then stays.
     pub fn set_scene(&mut self, scene: &Scene) -> Result<SceneReport, Error> {
         scene.validate()?;
-        let (host, compiled) = rayon::join(|| HostScene::build(scene), || self.compile(scene));
+        let most = scene_buffers::most_triangles(&self.gpu);
+        let (host, compiled) = rayon::join(|| HostScene::build(scene, most), || self.compile(scene));
         let host = host?;
         compiled?;
         let report = SceneReport {

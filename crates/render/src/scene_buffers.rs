@@ -6,6 +6,7 @@ use diacaustic_shaders as shaders;
 use diacaustic_shaders::{material_kind, triangle_flag};
 use diacaustic_surface::{MapSquare, MapTiles, WorldTriangle};
 use glam::Vec2;
+use rayon::prelude::*;
 
 use crate::{
     Error,
@@ -65,6 +66,11 @@ impl Uploader<'_> {
     }
 }
 
+/// Triangles that the device holds: as many as their largest record has room for in one texture.
+pub(crate) fn most_triangles(gpu: &Gpu) -> usize {
+    gpu.most_record_bytes() as usize / size_of::<shaders::TriangleCorners>()
+}
+
 /// The binding of the maps' records.
 const MAPS_BINDING: usize = 3;
 
@@ -73,10 +79,10 @@ impl SceneBuffers {
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, host: &HostScene) -> Result<Self, Error> {
         let HostScene { bvh, lights, maps, .. } = host;
         let nodes: &[shaders::BvhNode] = bytemuck::cast_slice(&bvh.nodes);
-        let triangles: Vec<_> = bvh.triangles.iter().map(|t| triangle(scene, t)).collect();
+        let triangles: Vec<_> = bvh.triangles.par_iter().map(|t| triangle(scene, t)).collect();
         let corners: Vec<_> = bvh
             .triangles
-            .iter()
+            .par_iter()
             .map(|t| triangle_corners(t, maps.get(t.object as usize).and_then(Option::as_ref)))
             .collect();
         let blank: Vec<_> = maps.iter().map(|plan| plan.as_ref().map(blank_tiles)).collect();

@@ -1,8 +1,9 @@
 //! The bounding volume hierarchy, built by obvhs.
 
-use std::time::Duration;
+use std::{borrow::Borrow, time::Duration};
 
 use obvhs::{BvhBuildParams, cwbvh::builder::build_cwbvh_from_tris, triangle::Triangle};
+use rayon::prelude::*;
 
 use crate::{Error, WorldTriangle};
 
@@ -35,16 +36,16 @@ impl Bvh {
         if depth > MAX_DEPTH {
             return Err(Error::TooDeep { depth, limit: MAX_DEPTH });
         }
-        let triangles = bvh.primitive_indices.iter().map(|&index| triangles[index as usize]).collect();
+        let triangles = bvh.primitive_indices.par_iter().map(|&index| triangles[index as usize]).collect();
         Ok(Self { nodes: bvh.nodes, triangles })
     }
 }
 
 /// The triangles as obvhs takes them.
-pub(crate) fn for_obvhs(triangles: &[WorldTriangle]) -> Vec<Triangle> {
+pub(crate) fn for_obvhs(triangles: &[impl Borrow<WorldTriangle> + Sync]) -> Vec<Triangle> {
     let convert =
         |t: &WorldTriangle| Triangle { v0: t.corners[0].into(), v1: t.corners[1].into(), v2: t.corners[2].into() };
-    triangles.iter().map(convert).collect()
+    triangles.par_iter().map(|t| convert(t.borrow())).collect()
 }
 
 /// Levels of nodes from the root down.

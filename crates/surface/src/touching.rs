@@ -3,7 +3,12 @@
 //! A ray leaves a surface from a point just off it and cannot meet a second surface in the same place. What touches is made to overlap
 //! instead, and media decide what fills the overlap (docs/materials.md, "Media").
 
-use std::{collections::HashMap, time::Duration};
+mod object_boxes;
+
+use std::{
+    collections::{HashMap, HashSet},
+    time::Duration,
+};
 
 use diacaustic_scene::{MaterialKind, Scene};
 use glam::Vec3;
@@ -13,6 +18,9 @@ use obvhs::{
     bvh2::{Bvh2, builder::build_bvh2_from_tris},
 };
 
+use rayon::prelude::*;
+
+use self::object_boxes::{ObjectBoxes, around, box_of, grown};
 use crate::{WorldTriangle, bvh::for_obvhs};
 
 /// Share of a triangle's greatest coordinate or edge by which a ray's origin is moved off it: 2⁻¹⁹, `OFFSET_PER_METRE` of
@@ -38,24 +46,57 @@ pub fn separate_touching(scene: &Scene, triangles: &mut [WorldTriangle]) {
     if depths.is_empty() || objects < 2 {
         return;
     }
-    let bvh = build_bvh2_from_tris(&for_obvhs(triangles), BvhBuildParams::very_fast_build(), &mut Duration::default());
     // No triangle counts as touched from farther.
-    let reach = TOUCHING * RAY_OFFSET * triangles.iter().map(extent).fold(0.0, f32::max);
-    let mut shifts = HashMap::new();
-    for (vertex, normal) in vertices(triangles, &depths) {
-        let (object, place) = vertex;
-        if let Some(distance) =
-            depth_of_touch(&bvh, triangles, object, (bits_to_point(place), normal), reach, depths[&object])
-        {
-            shifts.insert(vertex, normal * distance);
-        }
+    let reach = TOUCHING * RAY_OFFSET * triangles.par_iter().map(extent).reduce(|| 0.0, f32::max);
+    let (vertices, others) = what_may_touch(triangles, &depths, reach);
+    if vertices.is_empty() || others.is_empty() {
+        return;
     }
-    for triangle in triangles.iter_mut().filter(|t| depths.contains_key(&t.object)) {
+    let bvh = build_bvh2_from_tris(&for_obvhs(&others), BvhBuildParams::very_fast_build(), &mut Duration::default());
+    let shift = |(vertex, normal): (Vertex, Vec3)| {
+        let (object, place) = vertex;
+        let point = bits_to_point(place);
+        let distance = depth_of_touch(&bvh, &others, object, (point, normal), reach, depths[&object])?;
+        Some((vertex, normal * distance))
+    };
+    let shifts: HashMap<_, _> = vertices.into_par_iter().filter_map(shift).collect();
+    if shifts.is_empty() {
+        return;
+    }
+    triangles.par_iter_mut().filter(|t| depths.contains_key(&t.object)).for_each(|triangle| {
         for corner in &mut triangle.corners {
             *corner +=
                 shifts.get(&(triangle.object, corner.to_array().map(f32::to_bits))).copied().unwrap_or(Vec3::ZERO);
         }
-    }
+    });
+}
+
+/// The vertices of dielectric objects near the box of another object, with their unit normals outwards, and the triangles that they may
+/// touch.
+fn what_may_touch<'t>(
+    triangles: &'t [WorldTriangle],
+    depths: &HashMap<u32, f32>,
+    reach: f32,
+) -> (HashMap<Vertex, Vec3>, Vec<&'t WorldTriangle>) {
+    // Twice the reach, so that rounding leaves nothing out.
+    let objects = ObjectBoxes::new(triangles, 2.0 * reach);
+    let that_meet = |counts: &(dyn Fn(u32) -> bool + Sync)| -> HashSet<u32> {
+        let meets = |own: &&object_boxes::ObjectBox| {
+            objects.any_meets(own.around, |other| other != own.object && counts(other))
+        };
+        objects.boxes.iter().filter(meets).map(|own| own.object).collect()
+    };
+    let (movable, touchable) = (that_meet(&|_| true), that_meet(&|other| depths.contains_key(&other)));
+    let is_near = |t: &WorldTriangle| {
+        let meets = |corner: Vec3| objects.any_meets(Aabb::from_point(corner.into()), |other| other != t.object);
+        t.corners.into_iter().any(meets)
+    };
+    let may_move = |t: &&WorldTriangle| depths.contains_key(&t.object) && movable.contains(&t.object) && is_near(t);
+    let near: Vec<_> = triangles.par_iter().filter(may_move).collect();
+    let place = grown(around(near.par_iter().copied()), 2.0 * reach);
+    let may_be_touched = |t: &&WorldTriangle| touchable.contains(&t.object) && place.intersect_aabb(&box_of(t));
+    let others = triangles.par_iter().filter(may_be_touched).collect();
+    (vertices(&near), others)
 }
 
 /// A place of an object's surface, by the bits of its coordinates.
@@ -75,10 +116,10 @@ fn depths(scene: &Scene) -> HashMap<u32, f32> {
         .collect()
 }
 
-/// The vertices of dielectric objects and their unit normals, outwards.
-fn vertices(triangles: &[WorldTriangle], depths: &HashMap<u32, f32>) -> HashMap<Vertex, Vec3> {
+/// The vertices of triangles and their unit normals, outwards.
+fn vertices(triangles: &[&WorldTriangle]) -> HashMap<Vertex, Vec3> {
     let mut normals: HashMap<Vertex, Vec3> = HashMap::new();
-    for triangle in triangles.iter().filter(|t| depths.contains_key(&t.object)) {
+    for triangle in triangles {
         let [a, b, c] = triangle.corners;
         let normal = triangle.double_area_normal().normalize_or_zero();
         // By angle, so that the normal does not depend on how faces are cut into triangles.
@@ -95,7 +136,7 @@ fn vertices(triangles: &[WorldTriangle], depths: &HashMap<u32, f32>) -> HashMap<
 /// How far a vertex moves along its normal, metres; none if it touches no other object.
 fn depth_of_touch(
     bvh: &Bvh2,
-    triangles: &[WorldTriangle],
+    triangles: &[&WorldTriangle],
     object: u32,
     (point, normal): (Vec3, Vec3),
     reach: f32,
@@ -106,9 +147,12 @@ fn depth_of_touch(
     bvh.aabb_traverse(around, |bvh, node| {
         let node = &bvh.nodes[node as usize];
         for slot in node.first_index..node.first_index + node.prim_count {
-            let other = &triangles[bvh.primitive_indices[slot as usize] as usize];
+            let other = triangles[bvh.primitive_indices[slot as usize] as usize];
+            if other.object == object {
+                continue;
+            }
             let offset = RAY_OFFSET * extent(other).max(point.abs().max_element());
-            if other.object != object && touches(other, point, TOUCHING * offset) {
+            if touches(other, point, TOUCHING * offset) {
                 let cosine = normal.dot(other.double_area_normal().normalize_or_zero()).abs().max(LEAST_COSINE);
                 distance = Some(distance.unwrap_or(0.0).max(depth * offset / cosine));
             }
@@ -178,6 +222,21 @@ mod tests {
             "{FLOOR}, {{ box = {{ min = [-1, 0.001, -1], max = [1, 1, 1] }}, material = \"glass\" }}"
         ));
         assert_eq!(before, after);
+    }
+
+    #[test]
+    fn ball_on_the_floor_sinks_in_where_it_touches_alone() {
+        let (before, after) = separated(&format!(
+            "{FLOOR}, {{ sphere = {{ center = [0, 0.5, 0], radius = 0.5 }}, material = \"glass\" }}"
+        ));
+        assert!(lowest(&before, 1).abs() < 1e-7 && lowest(&after, 1) < -2.0 * RAY_OFFSET, "{}", lowest(&after, 1));
+        let corners = |triangles: &[WorldTriangle]| {
+            let ball = triangles.iter().filter(|t| t.object == 1);
+            ball.flat_map(|t| t.corners).collect::<Vec<_>>()
+        };
+        for (was, is) in corners(&before).into_iter().zip(corners(&after)) {
+            assert_eq!(was != is, was.y.abs() < 1e-7, "{was} {is}");
+        }
     }
 
     #[test]
