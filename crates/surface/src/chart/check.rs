@@ -221,3 +221,39 @@ fn reaches(triangle: &[DVec2; 3], place: DVec2, distance: f64) -> bool {
         turn * along.perp_dot(place - triangle[k]) >= -distance
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use diacaustic_scene::{Mesh, Object};
+    use glam::Vec3;
+
+    use super::*;
+    use crate::chart::growing::Chart;
+
+    /// Of a chart of two rough triangles, one `height` texels above the other, the patches that are too far behind.
+    fn behind(height: f32) -> Vec<u32> {
+        let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let positions = triangle.into_iter().chain(triangle.map(|p| 0.5 * p + Vec3::Z * height)).collect();
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() };
+        let object = Object {
+            name: String::new(),
+            mesh: mesh.into(),
+            world_from_object: glam::Affine3A::IDENTITY,
+            materials: vec![0],
+            map_size: None,
+        };
+        let facets = Facets::new(&object);
+        let texel = facets.metres.recip();
+        let patches = Patches::new(&facets, 0.0);
+        let chart = Chart { axis: DVec3::Z, patches: vec![0, 1] };
+        let charts = Charts { charts: vec![chart], of: vec![0, 0], is_rough: vec![false, true] };
+        far_behind(&facets, &patches, &charts, 0, texel)
+    }
+
+    #[test]
+    fn what_is_several_texels_behind_is_found() {
+        assert!(behind(3.9).is_empty());
+        assert_eq!(behind(4.1), [1]);
+        assert_eq!(behind(-4.1), [1]);
+    }
+}

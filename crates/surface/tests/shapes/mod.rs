@@ -141,31 +141,3 @@ pub fn hashed(number: u32) -> f64 {
     x = (x ^ x >> 15).wrapping_mul(0x735a_2d97);
     f64::from(x ^ x >> 15) / 4_294_967_296.0
 }
-
-/// A plane of `cells` × `cells` squares, of which each `every`th along both axes is the foot of a tower `height` squares high.
-pub fn spikes(cells: u32, every: u32, height: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    let columns = cells + 1;
-    for (y, x) in (0..columns).flat_map(|y| (0..columns).map(move |x| (y, x))) {
-        mesh.positions.push(Vec3::new(x as f32, y as f32, 0.0));
-    }
-    for (y, x) in (0..cells).flat_map(|y| (0..cells).map(move |x| (y, x))) {
-        let mut ring = [y * columns + x, y * columns + x + 1, (y + 1) * columns + x + 1, (y + 1) * columns + x];
-        if x % every == every / 2 && y % every == every / 2 {
-            for level in 1..=height {
-                let above = ring.map(|vertex| {
-                    let foot = mesh.positions[vertex as usize];
-                    mesh.positions.push(Vec3::new(foot.x, foot.y, level as f32));
-                    mesh.positions.len() as u32 - 1
-                });
-                for k in 0..4 {
-                    let [a, b, c, d] = [ring[k], ring[(k + 1) % 4], above[(k + 1) % 4], above[k]];
-                    mesh.triangles.extend([[a, b, c], [a, c, d]]);
-                }
-                ring = above;
-            }
-        }
-        mesh.triangles.extend([[ring[0], ring[1], ring[2]], [ring[0], ring[2], ring[3]]]);
-    }
-    mesh
-}
