@@ -409,6 +409,38 @@ mod tests {
     }
 
     #[test]
+    fn photons_go_on_while_they_are_cheap() {
+        let settings = RenderSettings { width: 1024, height: 512, ..settings(None, None) };
+        let mut course = Course::new(&settings, SUPPLY);
+        // Far below a quarter of the target's square, and above a twentieth.
+        let mut sign = 1.0;
+        while course.stage == Stage::Photons {
+            match course.next_step() {
+                Step::Emit(range) => course.note_photons(range.end),
+                Step::Probe => {
+                    sign = -sign;
+                    course.note_probe(&[Sighting::default(); 8], vec![Vec3::splat(4.0 + 0.07 * sign); 8]);
+                }
+                step => panic!("{step:?}"),
+            }
+        }
+        let fewest = u64::from(settings.width * settings.height) / 2;
+        assert!((fewest..3 * fewest).contains(&course.emitted), "{} photons", course.emitted);
+    }
+
+    #[test]
+    fn coloured_noise_counts_as_white_noise_does() {
+        let change = |color: Vec3| {
+            let look = Look { sightings: &[Sighting::default()], of_maps: &[color] };
+            look.relative_change(&[1.1 * color])
+        };
+        let (white, red) = (change(Vec3::ONE), change(Vec3::X));
+        assert!((white - 0.01 / 1.01).abs() < 1e-4, "{white}");
+        // Of a single channel the darkness that is forgiven is a third.
+        assert!((red - 0.01 / (1.0 + 1.0 / 300.0)).abs() < 1e-3, "{red}");
+    }
+
+    #[test]
     fn samples_go_where_errors_are() {
         let mut course = Course::new(&settings(Some(0), None), SUPPLY);
         course.note_samples(2);
