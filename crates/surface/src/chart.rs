@@ -1,5 +1,6 @@
 //! How an object's surface lies on the plane of its energy map.
 
+mod absorbing;
 mod atlas;
 mod cells;
 mod check;

@@ -43,7 +43,7 @@ pub(super) fn check(facets: &Facets<'_>, patches: &Patches, charts: &Charts, cha
         let beyond = facets.neighbours[triangle as usize][edge];
         beyond == NONE || {
             let patch = patches.of[beyond as usize];
-            charts.of[patch as usize] != chart || patches.triangles(patch).len() > 1
+            charts.of[patch as usize] != chart || charts.is_rough[patch as usize]
         }
     };
     if !flat.overlaps_at_border(is_at_border) && !flat.has_layers() {
@@ -57,6 +57,17 @@ pub(super) fn check(facets: &Facets<'_>, patches: &Patches, charts: &Charts, cha
         return Verdict::Halves;
     }
     Verdict::Without(removed.into_iter().map(|place| own[place]).collect())
+}
+
+/// The patches of a chart, all of whose overlaps are with rough ones, that lie far behind or in front of earlier ones.
+pub(super) fn far_behind(facets: &Facets<'_>, patches: &Patches, charts: &Charts, chart: u32, texel: f64) -> Vec<u32> {
+    let own = &charts.charts[chart as usize].patches;
+    let flat = FlatChart::new(facets, patches, charts, chart, texel);
+    if flat.boxes > MANY_BOXES {
+        return own.iter().copied().filter(|&patch| charts.is_rough[patch as usize]).collect();
+    }
+    let removed = if flat.has_layers() { flat.latecomers(own.len()) } else { Vec::new() };
+    removed.into_iter().map(|place| own[place]).collect()
 }
 
 /// A chart's triangles with an area, laid flat.
@@ -82,6 +93,7 @@ struct FlatChart {
 
 impl FlatChart {
     fn new(facets: &Facets<'_>, patches: &Patches, charts: &Charts, chart: u32, texel: f64) -> Self {
+        let is_rough = &charts.is_rough;
         let chart = &charts.charts[chart as usize];
         let (u, v) = chart.axis.any_orthonormal_pair();
         let turn = |p: DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(chart.axis));
@@ -91,7 +103,7 @@ impl FlatChart {
             for &triangle in members.iter().filter(|&&triangle| facets.area(triangle) > 0.0) {
                 triangles.push(triangle);
                 place.push(number as u32);
-                is_single.push(members.len() == 1);
+                is_single.push(!is_rough[patch as usize]);
             }
         }
         let corners = |triangle: u32| facets.corners(triangle).map(turn);
@@ -208,4 +220,40 @@ fn reaches(triangle: &[DVec2; 3], place: DVec2, distance: f64) -> bool {
         let along = (triangle[(k + 1) % 3] - triangle[k]).normalize_or_zero();
         turn * along.perp_dot(place - triangle[k]) >= -distance
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use diacaustic_scene::{Mesh, Object};
+    use glam::Vec3;
+
+    use super::*;
+    use crate::chart::growing::Chart;
+
+    /// Of a chart of two rough triangles, one `height` texels above the other, the patches that are too far behind.
+    fn behind(height: f32) -> Vec<u32> {
+        let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let positions = triangle.into_iter().chain(triangle.map(|p| 0.5 * p + Vec3::Z * height)).collect();
+        let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() };
+        let object = Object {
+            name: String::new(),
+            mesh: mesh.into(),
+            world_from_object: glam::Affine3A::IDENTITY,
+            materials: vec![0],
+            map_size: None,
+        };
+        let facets = Facets::new(&object);
+        let texel = facets.metres.recip();
+        let patches = Patches::new(&facets, 0.0);
+        let chart = Chart { axis: DVec3::Z, patches: vec![0, 1] };
+        let charts = Charts { charts: vec![chart], of: vec![0, 0], is_rough: vec![false, true] };
+        far_behind(&facets, &patches, &charts, 0, texel)
+    }
+
+    #[test]
+    fn what_is_several_texels_behind_is_found() {
+        assert!(behind(3.9).is_empty());
+        assert_eq!(behind(4.1), [1]);
+        assert_eq!(behind(-4.1), [1]);
+    }
 }

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{
+    absorbing::absorb_small,
     check::{Verdict, check},
     facets::{Facets, NONE},
     patches::Patches,
@@ -33,11 +34,14 @@ pub(super) struct Charts {
     pub charts: Vec<Chart>,
     /// [`NONE`] for patches without area that border on nothing.
     pub of: Vec<u32>,
+    /// Whether a patch may face any way and lie on others, for no texel tells apart what is in it.
+    pub is_rough: Vec<bool>,
 }
 
 /// Divides a surface into charts, none of which overlaps in its projection.
 pub(super) fn grow_charts(facets: &Facets<'_>, patches: &Patches, texel: f64) -> Charts {
-    let mut grown = Charts { charts: Vec::new(), of: vec![NONE; patches.count()] };
+    let is_rough = (0..patches.count() as u32).map(|patch| patches.triangles(patch).len() > 1).collect();
+    let mut grown = Charts { charts: Vec::new(), of: vec![NONE; patches.count()], is_rough };
     let mut waiting: Vec<u32> = (0..patches.count() as u32).collect();
     let mut unchecked: Vec<u32> = Vec::new();
     for round in 0.. {
@@ -70,7 +74,15 @@ pub(super) fn grow_charts(facets: &Facets<'_>, patches: &Patches, texel: f64) ->
             }
         }
     }
+    absorb_small(facets, patches, &mut grown, texel);
     grown
+}
+
+impl Chart {
+    /// Its area, units².
+    pub(super) fn area(&self, patches: &Patches) -> f64 {
+        0.5 * self.patches.iter().map(|&patch| patches.double_areas[patch as usize].as_dvec3().length()).sum::<f64>()
+    }
 }
 
 impl Charts {
@@ -113,14 +125,7 @@ impl Charts {
 
     /// Lets each chart of few texels join the neighbour with the longest common border that faces about the same way.
     fn join_small(&mut self, facets: &Facets<'_>, patches: &Patches, texel: f64) {
-        let area = |chart: &Chart| {
-            0.5 * chart
-                .patches
-                .iter()
-                .map(|&patch| patches.double_areas[patch as usize].as_dvec3().length())
-                .sum::<f64>()
-        };
-        let mut areas: Vec<f64> = self.charts.iter().map(area).collect();
+        let mut areas: Vec<f64> = self.charts.iter().map(|chart| chart.area(patches)).collect();
         for small in 0..self.charts.len() {
             if areas[small] >= SMALL * texel * texel {
                 continue;

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, HashMap};
 use super::{Weld, WeldPart, Welds};
 use crate::{MapTile, MapTiles, TexelChart, TexelSurface};
 
-/// Share of a whole texel below which a texel is a scrap. Those on a straight border of the plane hold a half.
-const SCRAP: f64 = 0.4;
+/// Share of a whole texel below which a texel is a scrap. What is shown inside a chart is a mean over about four texels, for photons are laid
+/// and read bilinearly; with less than this, borders are grainier.
+const SCRAP: f64 = 0.85;
 /// Share of what a texel can hold on its tile from which on it is whole.
 const WHOLE: f64 = 0.99;
 
