@@ -64,7 +64,9 @@ pub fn texel_surfaces(layout: &MapLayout, tiles: &MapTiles, triangles: &[WorldTr
             let area = 0.5 * world_double_area(triangle.corners);
             let chart = layout.chart_of(triangle.triangle);
             let chart_area = 0.5 * (places[1] - places[0]).perp_dot(places[2] - places[0]).abs();
-            let spread = if chart_area > 1e-9 * tiles.cell_area_bound() {
+            // A long triangle as thin as rounding is a line, too.
+            let is_folded = chart_area <= 1e-9 * tiles.cell_area_bound().max(10.0 * longest_squared(places));
+            let spread = if !is_folded {
                 Spread::Over(places, area / chart_area)
             } else {
                 Spread::Folded(folded_points(places, area))
@@ -174,9 +176,13 @@ fn world_double_area(corners: [Vec3; 3]) -> f64 {
     (b - a).cross(c - a).length()
 }
 
+fn longest_squared([a, b, c]: [DVec2; 3]) -> f64 {
+    (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared())
+}
+
 /// Points in place of a triangle that is folded, with their shares of its area: it is cut into congruent pieces, upright and inverted.
 fn folded_points([a, b, c]: [DVec2; 3], area: f64) -> Vec<(DVec2, f64)> {
-    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    let longest = longest_squared([a, b, c]).sqrt();
     let pieces = (4.0 * longest).ceil().clamp(1.0, 256.0) as usize;
     let share = area / (pieces * pieces) as f64;
     let center = |i: usize, j: usize, within: f64| {
