@@ -34,7 +34,8 @@ struct Neighbour {
 fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
     let first = (1u + light_group_count) * texel;
     if mixes_hues {
-        return Neighbour(vec4<f32>(0.0), textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
+        let all_light = textureLoad(rough_irradiance, record_texel(first), 0);
+        return Neighbour(all_light, textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
     }
     let guides = select(smooth_params.first_guide, 0u, smooth_params.makes_guide != 0u);
     let guide = textureLoad(rough_irradiance, record_texel(guides + first), 0);
@@ -114,10 +115,11 @@ fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, ot
     (*exchange).around += kernel * other.own.w * other.area;
 }
 
-/// Adds an exchange of hue: either gives as much as the other takes, by the smaller flux of luminance, and keeps its luminance.
+/// Adds an exchange of hue: either gives as much as the other takes, by the smaller flux of luminance, and keeps its luminance. Light groups exchange
+/// by that of all light, so that they still sum to it.
 fn exchange_hue_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
-    let own = dot(texel.own.xyz, LUMINANCE);
-    let others = dot(other.own.xyz, LUMINANCE);
+    let own = dot(texel.guide.xyz, LUMINANCE);
+    let others = dot(other.guide.xyz, LUMINANCE);
     if own <= 0.0 || others <= 0.0 {
         return;
     }
@@ -205,15 +207,8 @@ fn smooth_maps(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocatio
     }
     let record = load_map_texel(texel);
     let entries = 1u + light_group_count;
-    // Hues of groups are mixed one by one, so that all light, the first entry, is their sum.
-    var sum = vec4<f32>(0.0);
-    for (var k = 1u; k <= entries; k++) {
-        let entry = entries - k;
-        var value = sum;
-        if !mixes_hues || entry > 0u || entries == 1u {
-            value = smoothed(texel, record, entry);
-            sum += value;
-        }
+    for (var entry = 0u; entry < entries; entry++) {
+        let value = smoothed(texel, record, entry);
         if is_weld {
             welded[entries * index + entry] = value;
         } else {
