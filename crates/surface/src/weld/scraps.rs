@@ -11,6 +11,9 @@ const SCRAP: f64 = 0.85;
 /// Share of what a texel can hold on its tile from which on it is whole.
 const WHOLE: f64 = 0.99;
 
+/// Nodes of a group that is given up if it does not cover enough by then: where a chart is thinner than texels for long, there is nothing to join.
+const MOST_NODES: usize = 64;
+
 /// Joins scraps to what is beside them in the same chart, the smallest first, until together they are large enough.
 pub(super) fn join_scraps(tiles: &MapTiles, surfaces: &[TexelSurface], welds: Welds) -> Welds {
     let mut scraps = Scraps { tiles, surfaces, welds, parents: BTreeMap::new(), groups: HashMap::new() };
@@ -33,7 +36,6 @@ struct Scraps<'t> {
 }
 
 /// Nodes that become one.
-#[derive(Clone)]
 struct Group {
     /// The plane that they cover, in the layout's texels squared.
     covered: f64,
@@ -76,20 +78,27 @@ impl Scraps<'_> {
     fn grow(&mut self, scrap: u64, least: f64) {
         loop {
             let root = self.root(scrap);
-            let own = self.group(root);
-            if own.covered >= least {
+            if self.covered(root) >= least {
+                return;
+            }
+            let own = self.take_group(root);
+            if own.nodes.len() >= MOST_NODES {
+                self.groups.insert(root, own);
                 return;
             }
             let mut beside: Vec<u64> =
                 own.nodes.iter().flat_map(|&node| self.beside(node)).map(|node| self.root(node)).collect();
             beside.sort_unstable();
             beside.dedup();
-            let others = beside.into_iter().filter(|&other| other != root).map(|other| (self.group(other), other));
-            let Some((mut largest, other)) = others.max_by(|a, b| a.0.covered.total_cmp(&b.0.covered)) else { return };
+            let others = beside.into_iter().filter(|&other| other != root).map(|other| (self.covered(other), other));
+            let Some((_, other)) = others.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+                self.groups.insert(root, own);
+                return;
+            };
+            let mut largest = self.take_group(other);
             largest.covered += own.covered;
             largest.nodes.extend(own.nodes);
             self.parents.insert(root, other);
-            self.groups.remove(&root);
             self.groups.insert(other, largest);
         }
     }
@@ -101,10 +110,15 @@ impl Scraps<'_> {
         node
     }
 
-    /// The group of a root.
-    fn group(&self, root: u64) -> Group {
-        let alone = || Group { covered: self.node_covers(root), nodes: vec![root] };
-        self.groups.get(&root).cloned().unwrap_or_else(alone)
+    /// What the group of a root covers.
+    fn covered(&self, root: u64) -> f64 {
+        self.groups.get(&root).map_or_else(|| self.node_covers(root), |group| group.covered)
+    }
+
+    /// The group of a root, out of the list.
+    fn take_group(&mut self, root: u64) -> Group {
+        let known = self.groups.remove(&root);
+        known.unwrap_or_else(|| Group { covered: self.node_covers(root), nodes: vec![root] })
     }
 
     fn node_covers(&self, node: u64) -> f64 {
