@@ -239,9 +239,9 @@ fn dispersion_splits_white_light_and_the_ledger_closes() {
     assert!(negative > 0, "no colour beyond what three lights can show");
 }
 
-/// Flux in each channel that the irradiance of a map stands for, W, and Σ of a squared error against a map that is more exact.
+/// Flux in each channel that the irradiance of a map stands for, W.
 fn flux_shown(map: &EnergyMap) -> DVec3 {
-    (0..map.areas.len()).map(|texel| map.irradiance(texel) * f64::from(map.areas[texel])).sum()
+    (0..map.areas.len()).map(|texel| map.irradiance(texel) * map.areas[texel]).sum()
 }
 
 #[test]
