@@ -98,12 +98,17 @@ struct Exchange {
     around: f32,
 }
 
+/// The kernel's weight at neighbour k of nine: a side or a corner.
+fn kernel_at(k: u32) -> f32 {
+    return select(0.0625, 0.125, (k & 1u) == 1u);
+}
+
 /// Adds the exchange of a texel with neighbour k of nine, row by row: as much flux as the other gives this one, for each weighs by the smaller
 /// area of the two.
 fn exchange_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neighbour) {
     let difference = other.guide.xyz - texel.guide.xyz;
     let noise = max(TOLERANCE * (texel.guide.w + other.guide.w), 1e-37);
-    let kernel = select(0.0625, 0.125, (k & 1u) == 1u);
+    let kernel = kernel_at(k);
     let bounded = kernel * min(other.area / texel.area, 1.0);
     let weight = bounded * exp(-dot(difference, difference) / (3.0 * noise));
     (*exchange).change += weight * (other.own.xyz - texel.own.xyz);
@@ -123,7 +128,7 @@ fn exchange_hue_with(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour
     if own <= 0.0 || others <= 0.0 {
         return;
     }
-    let kernel = select(0.0625, 0.125, (k & 1u) == 1u);
+    let kernel = kernel_at(k);
     let weight = kernel * min(others * other.area / (own * texel.area), 1.0);
     (*exchange).change += weight * (other.own.xyz * (own / others) - texel.own.xyz);
 }

@@ -44,6 +44,17 @@ pub(super) struct MaterialReader<'a, 'b> {
     pub(super) warnings: Vec<Fault>,
 }
 
+/// What a file says of a material.
+#[derive(Clone, Copy)]
+struct Described<'a> {
+    name: &'a str,
+    numbers: &'a Numbers,
+    layers: &'a Layers,
+    pictures: &'a Pictures,
+    /// Where in the file, for messages.
+    place: &'a str,
+}
+
 impl<'a, 'b> MaterialReader<'a, 'b> {
     pub(super) fn new(root: &'a Root, textures: TextureReader<'a, 'b>) -> Self {
         Self {
@@ -122,8 +133,10 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         let is_unlit = source.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
         let layers = Layers { is_unlit, ..Layers::of(others, ior, &place)? };
         self.warn_of_layers(&layers, glass.is_some(), &place);
-        let Some((glass, parts)) = glass else { return Ok(self.opaque(name, &numbers, &layers, pictures, &place)) };
-        let blend = self.rest_of_glass(&parts, &name, &numbers, &layers, &pictures, &place);
+        let described =
+            Described { name: &name, numbers: &numbers, layers: &layers, pictures: &pictures, place: &place };
+        let Some((glass, parts)) = glass else { return Ok(self.opaque(described)) };
+        let blend = self.rest_of_glass(&parts, described);
         let mut material = if is_volume {
             let extras = source.extras.as_ref().map(|extras| extras.get());
             self.volume(name, extras, glass, &numbers, pictures, &place)?
@@ -227,23 +240,15 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
     }
 
     /// What a material is where it is no glass, if there is such a place.
-    fn rest_of_glass(
-        &mut self,
-        parts: &Parts,
-        name: &str,
-        numbers: &Numbers,
-        layers: &Layers,
-        pictures: &Pictures,
-        place: &str,
-    ) -> Option<Box<Blend>> {
+    fn rest_of_glass(&mut self, parts: &Parts, described: Described) -> Option<Box<Blend>> {
         if parts.is_whole() {
             return None;
         }
         let (share, texture) = parts.glass.clone();
         let (metallic, metal) = parts.metal.clone();
-        let numbers = Numbers { metallic, ..numbers.without_shine() };
-        let layers = Layers { coat: None, is_unlit: false, ..*layers };
-        let mut rest = self.opaque(name.to_owned(), &numbers, &layers, pictures.clone(), place);
+        let numbers = Numbers { metallic, ..described.numbers.without_shine() };
+        let layers = Layers { coat: None, is_unlit: false, ..*described.layers };
+        let mut rest = self.opaque(Described { numbers: &numbers, layers: &layers, ..described });
         if let MaterialKind::MetallicRoughness { .. } = rest.kind {
             rest.textures.metallic = metal;
         }
@@ -265,17 +270,11 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
     }
 
     /// A material through which no light passes.
-    fn opaque(
-        &mut self,
-        name: String,
-        numbers: &Numbers,
-        layers: &Layers,
-        pictures: Pictures,
-        place: &str,
-    ) -> Material {
+    fn opaque(&mut self, described: Described) -> Material {
+        let Described { name, numbers, layers, pictures, place } = described;
         let Numbers { base_color, metallic, roughness, mut emission, .. } = *numbers;
         let mut emission_picture = pictures.emission.clone().filter(|_| emission != Vec3::ZERO);
-        let coat = self.coat(numbers, layers, &pictures, place);
+        let coat = self.coat(numbers, layers, pictures, place);
         let mut textures = pictures.textures();
         let mut blend = None;
         let has_no_metal = metallic == 0.0;
@@ -287,7 +286,7 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         } else if let Some([strength, roughness]) = coat {
             textures.roughness =
                 pictures.coat_roughness.clone().map(|texture| Texture { channel: ROUGHNESS, ..texture });
-            blend = self.rest_of_coat(strength, &name, numbers, layers, &pictures, place);
+            blend = self.rest_of_coat(strength, described);
             MaterialKind::Coated { albedo: base_color, ior: DEFAULT_IOR, roughness }
         } else if has_no_metal && layers.reflectance == Vec3::ZERO {
             textures.roughness = None;
@@ -298,26 +297,18 @@ impl<'a, 'b> MaterialReader<'a, 'b> {
         };
         textures.emission = emission_picture;
         let mut material = Material { emission, textures, blend, ..Material::new(name, kind) };
-        set_opacity(&mut material, numbers, &pictures);
+        set_opacity(&mut material, numbers, pictures);
         material
     }
 
     /// What a material is where it has no coat, if it has one in part.
-    fn rest_of_coat(
-        &mut self,
-        strength: f32,
-        name: &str,
-        numbers: &Numbers,
-        layers: &Layers,
-        pictures: &Pictures,
-        place: &str,
-    ) -> Option<Box<Blend>> {
-        let texture = pictures.coat.clone();
+    fn rest_of_coat(&mut self, strength: f32, described: Described) -> Option<Box<Blend>> {
+        let texture = described.pictures.coat.clone();
         if strength == 1.0 && texture.as_ref().is_none_or(|texture| texture.image.least().x >= 1.0) {
             return None;
         }
-        let layers = Layers { coat: None, ..*layers };
-        let rest = self.opaque(name.to_owned(), &numbers.without_shine(), &layers, pictures.clone(), place);
+        let (numbers, layers) = (described.numbers.without_shine(), Layers { coat: None, ..*described.layers });
+        let rest = self.opaque(Described { numbers: &numbers, layers: &layers, ..described });
         Some(Box::new(Blend { share: strength, texture, rest }))
     }
 
