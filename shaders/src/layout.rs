@@ -406,6 +406,8 @@ shared_structs! {
         samples: u32,
         /// Pixels within the picture.
         pixels: u32,
+        /// Rays of all samples of all its pixels.
+        rays: u32,
     }
     /// Which texels of a lightmap a dispatch samples.
     struct BakeParams {
