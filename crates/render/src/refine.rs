@@ -487,6 +487,25 @@ mod tests {
     }
 
     #[test]
+    fn samples_go_where_they_cost_little() {
+        let mut course = Course::new(&settings(Some(0), None), SUPPLY);
+        course.note_samples(FIRST_SAMPLES);
+        // All within the target; the second pays best, and one more would cost over a quarter of all rays.
+        let mut found = errors(&[(0.006, 4); 9]);
+        found.tiles[1].squared_error = 0.008;
+        found.tiles[8].rays = 8 * found.tiles[1].rays;
+        let rays = u64::from(found.tiles[1].rays);
+        // Neighbours guard each other: the first and the third are doubted with the second, and come first of the rest.
+        course.note_errors(&found);
+        assert_eq!(course.next_step(), Step::SampleTiles { tiles: vec![0, 1, 2, 3], count: 4 });
+        assert_eq!(course.cheap_rays, 4 * rays);
+        // So little error is not worth a ray.
+        course.note_tile_samples(4);
+        course.note_errors(&errors(&[(0.0004, 8); 9]));
+        assert_eq!(course.next_step(), Step::Rest);
+    }
+
+    #[test]
     fn tiles_that_never_settle_end_at_the_most_samples() {
         let mut course = Course::new(&settings(Some(0), None), SUPPLY);
         course.note_samples(FIRST_SAMPLES);
