@@ -120,15 +120,16 @@ fn sample_pixels(
     // One path a lane: starting the next sample as soon as one ends fills the lanes better, but every step then costs a start
     // too, which on software adapters is more.
     var path = start_path(pixel);
-    follow(&path);
+    let rays = follow(&path);
     if notes_sightings {
         end_tail(&path);
     }
     let index = path.pixel;
     add_to_squares(index, film.pixels[index], path.radiance);
-    if has_halves && (path.sample & (path.sample - 1u)) == 0u {
+    if has_halves {
         // Whole powers of two of the sequence's points are spread evenly.
-        halves[index] = film.pixels[index];
+        let is_half = (path.sample & (path.sample - 1u)) == 0u;
+        halves[index] = vec4<f32>(select(halves[index].xyz, film.pixels[index].xyz, is_half), halves[index].w + f32(rays));
     }
     film.pixels[index] += vec4<f32>(path.radiance, 1.0);
     if notes_sightings {

@@ -33,5 +33,5 @@ struct CameraParams {
 @group(1) @binding(1) var<uniform> camera_params: CameraParams;
 /// Tiles of 8 × 8 pixels to take samples of, four a texel: column in the low 16 bits, row in the high ones.
 @group(1) @binding(2) var tiles: texture_2d<u32>;
-/// For each pixel the sum of the radiance of its first samples, W/(m² sr), and their number: the last power of two before all.
+/// For each pixel the sum of the radiance of its first samples, W/(m² sr), as many as the last power of two before all; and the rays of all its samples.
 @group(2) @binding(7) var<storage, read_write> halves: array<vec4<f32>>;

@@ -22,12 +22,14 @@ struct TileError {
     samples: u32,
     /// Pixels within the picture.
     pixels: u32,
+    /// Rays of all samples of all its pixels.
+    rays: u32,
 }
 
 @group(0) @binding(0) var<uniform> error_params: ErrorParams;
 /// The camera pass's film: four words of counters, then the pixels.
 @group(0) @binding(1) var<storage, read> sampled_pixels: array<vec4<f32>>;
-/// For each pixel the sum of the radiance of its first samples, W/(m² sr), and their number: the last power of two before all.
+/// For each pixel the sum of the radiance of its first samples, W/(m² sr), as many as the last power of two before all; and the rays of all its samples.
 @group(0) @binding(2) var<storage, read> sampled_halves: array<vec4<f32>>;
 /// Row by row from the top left.
 @group(0) @binding(3) var<storage, read_write> tile_errors: array<TileError>;

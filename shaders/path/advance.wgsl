@@ -94,8 +94,8 @@ fn advance(path: ptr<function, Path>, rays: ptr<function, u32>) {
     }
 }
 
-/// Follows a path to its end and counts its rays.
-fn follow(path: ptr<function, Path>) {
+/// Follows a path to its end, counts its rays and returns their number.
+fn follow(path: ptr<function, Path>) -> u32 {
     var rays = 0u;
     var finished = false;
     loop {
@@ -111,4 +111,5 @@ fn follow(path: ptr<function, Path>) {
     if atomicAdd(&film.rays_low, rays) > 0xffffffffu - rays {
         atomicAdd(&film.rays_high, 1u);
     }
+    return rays;
 }

@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_neighbours_error_guards_a_tile() {
-        let tile = |squared_error: f32| TileError { squared_error, radiance: 1.0, samples: 4, pixels: 64 };
+        let tile = |squared_error: f32| TileError { squared_error, radiance: 1.0, samples: 4, pixels: 64, rays: 512 };
         let mut tiles = vec![tile(0.0); 12];
         tiles[5] = tile(0.9);
         let errors = TileErrors { columns: 4, tiles };

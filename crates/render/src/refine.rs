@@ -30,6 +30,9 @@ const CHEAP_PHOTONS: f64 = 0.25;
 pub(crate) const DARKNESS: f32 = 0.01;
 /// The part of a path's light that the maps must bring for the path to tell how exact they are.
 const LEAST_MAP_LIGHT: f32 = 0.05;
+/// The part that tiles are brought down to while that costs little, and how much it may cost of all rays of the picture.
+const CHEAP_TILE_SHARE: f64 = 0.05;
+const CHEAP_RAYS: f64 = 0.25;
 /// Samples of every pixel before errors are looked at.
 const FIRST_SAMPLES: u32 = 2;
 /// Samples at once, over all pixels: so many times the picture.
@@ -115,6 +118,8 @@ pub(crate) struct Course {
     /// Tiles that need more samples, and how many each before the next estimate.
     listed: Vec<(u32, u32)>,
     tile_count: usize,
+    /// Rays of samples that tiles within the target got because they cost little.
+    cheap_rays: u64,
     /// Photons that cost little beside the picture's first samples.
     cheap: u64,
 }
@@ -138,6 +143,7 @@ impl Course {
             sampled: 0,
             listed: Vec::new(),
             tile_count: 0,
+            cheap_rays: 0,
             cheap: cheap_photons(settings),
         }
     }
@@ -154,7 +160,7 @@ impl Course {
 
     /// Forgets all samples.
     pub fn forget_samples(&mut self) {
-        (self.sampled, self.camera_error) = (0, None);
+        (self.sampled, self.cheap_rays, self.camera_error) = (0, 0, None);
         self.listed.clear();
         if self.stage == Stage::Done {
             self.stage = Stage::Samples;
@@ -277,16 +283,40 @@ impl Course {
         let target = self.target.powi(2);
         let allowed = (target - self.light_error()).max((1.0 - MOST_MAP_SHARE) * target) as f32;
         self.tile_count = errors.tiles.len();
-        self.listed.clear();
-        for (tile, (error, found)) in errors.guarded().into_iter().zip(&errors.tiles).enumerate() {
-            if error > allowed && found.samples < MOST_SAMPLES {
-                // Twice as many: whole powers of two of the sequence's points are spread evenly, and the two halves are compared.
-                self.listed.push((tile as u32, found.samples));
-            }
+        let guarded = errors.guarded();
+        let may_go_on = |&tile: &usize| errors.tiles[tile].samples < MOST_SAMPLES;
+        let (missing, within): (Vec<_>, Vec<_>) =
+            (0..self.tile_count).filter(may_go_on).partition(|&tile| guarded[tile] > allowed);
+        let mut listed = missing;
+        if listed.len() <= (self.tile_count / TILES_FOR_EACH_MISS).max(1) {
+            listed.clear();
         }
-        if self.listed.len() <= (self.tile_count / TILES_FOR_EACH_MISS).max(1) {
+        listed.extend(self.cheap_tiles(within, &guarded, errors));
+        listed.sort_unstable();
+        // Twice as many: whole powers of two of the sequence's points are spread evenly, and the two halves are compared.
+        self.listed = listed.into_iter().map(|tile| (tile as u32, errors.tiles[tile].samples)).collect();
+        if self.listed.is_empty() {
             self.stage = Stage::Done;
         }
+    }
+
+    /// Of tiles within the target, those whose samples take most of the picture's error away for their rays, as many as cost little.
+    fn cheap_tiles(&mut self, mut tiles: Vec<usize>, guarded: &[f32], errors: &TileErrors) -> Vec<usize> {
+        let allowed = (CHEAP_TILE_SHARE * self.target.powi(2)) as f32;
+        let rays = |tile: usize| u64::from(errors.tiles[tile].rays);
+        let all: u64 = (0..self.tile_count).map(rays).sum();
+        // As many samples again take as many rays again, and half the error away.
+        let gain = |tile: usize| guarded[tile] * errors.tiles[tile].pixels as f32 / rays(tile).max(1) as f32;
+        tiles.retain(|&tile| guarded[tile] > allowed);
+        tiles.sort_by(|&a, &b| gain(b).total_cmp(&gain(a)).then(a.cmp(&b)));
+        let most = (CHEAP_RAYS * all as f64) as u64;
+        let fits = |&tile: &usize| {
+            let after = self.cheap_rays + rays(tile);
+            let fits = after <= most;
+            self.cheap_rays = if fits { after } else { self.cheap_rays };
+            fits
+        };
+        tiles.into_iter().take_while(fits).collect()
     }
 }
 
@@ -350,7 +380,7 @@ mod tests {
     }
 
     fn errors(tiles: &[(f32, u32)]) -> TileErrors {
-        let tile = |&(squared_error, samples)| TileError { squared_error, radiance: 1.0, samples, pixels: 64 };
+        let tile = |&(squared_error, samples)| TileError { squared_error, radiance: 1.0, samples, pixels: 64, rays: 64 * samples };
         TileErrors { columns: tiles.len(), tiles: tiles.iter().map(tile).collect() }
     }
 

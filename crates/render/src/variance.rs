@@ -10,7 +10,7 @@ pub(crate) struct SampleSums {
     pub width: usize,
     /// All samples of each pixel, row by row from the top left.
     pub all: Vec<[f32; 4]>,
-    /// The first samples of each pixel, the last power of two before all; empty if they are not kept.
+    /// The first samples of each pixel, as many as the last power of two before all, and a number that is not theirs; empty if they are not kept.
     pub halves: Vec<[f32; 4]>,
 }
 
@@ -49,11 +49,12 @@ fn if_independent(all: &[f32; 4], squares: &[f32; 3]) -> [f32; 3] {
 /// The variance of the mean of samples, of which the first and the rest are independent: means of n₁ and n₂ samples differ by σ²(1/n₁ + 1/n₂) in the mean
 /// square, and that of all has the variance σ²/(n₁ + n₂).
 fn by_halves(all: &[f32; 4], first: &[f32; 4]) -> [f32; 3] {
-    let (count, early) = (all[3], first[3]);
-    let late = count - early;
-    if early < 1.0 || late < 1.0 {
+    let count = all[3];
+    if count < 2.0 {
         return [0.0; 3];
     }
+    let early = (1u32 << (count as u32 - 1).ilog2()) as f32;
+    let late = count - early;
     std::array::from_fn(|k| {
         let difference = first[k] / early - (all[k] - first[k]) / late;
         difference * difference * early * late / (count * count)

@@ -24,6 +24,7 @@ impl Course {
         words.number(error.to_bits());
         words.number(self.sampled.into());
         words.number(self.tile_count as u64);
+        words.number(self.cheap_rays);
         words.number(self.listed.len() as u64);
         words.0.extend(self.listed.iter().flat_map(|&(tile, missing)| [tile, missing]));
         let (photons, picture) = self.last_look.as_ref().map_or((0, &[][..]), |(photons, picture)| (*photons, picture));
@@ -46,6 +47,7 @@ impl Course {
         let (is_filled, cache) = (words.number()? != 0, (words.number()?, f64::from_bits(words.number()?)));
         let cache = is_filled.then_some(cache);
         let (sampled, tile_count) = (words.number()? as u32, words.number()? as usize);
+        let cheap_rays = words.number()?;
         let count = words.number()? as usize;
         let listed = words.take(count.checked_mul(2)?)?.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect();
         let (photons, picture) = (words.number()?, words.picture()?);
@@ -60,6 +62,7 @@ impl Course {
             cache,
             sampled,
             tile_count,
+            cheap_rays,
             listed,
             last_look,
             ..self
@@ -134,6 +137,7 @@ mod tests {
         let mut saved = course(None);
         (saved.emitted, saved.next_look, saved.map_error) = (1 << 33, 3 << 33, 0.25);
         saved.last_look = Some((7, vec![Vec3::Y, Vec3::Z]));
+        saved.cheap_rays = 1 << 40;
         (saved.listed, saved.tile_count, saved.camera_error) = (vec![(3, 4), (9, 8)], 12, Some(0.5));
         saved.cache = Some((5, 0.125));
         let resumed = course(None).resumed(&saved.words()).unwrap();
