@@ -5,6 +5,7 @@ mod near;
 mod nodes;
 mod scraps;
 mod seams;
+mod stitches;
 
 use std::collections::HashMap;
 
@@ -72,7 +73,7 @@ impl Welds {
     /// `triangles` are the object's, in any order; those without an area may be missing.
     pub fn new(layout: &MapLayout, tiles: &MapTiles, texels: &[TexelSurface], triangles: &[WorldTriangle]) -> Self {
         let map = Map { layout, tiles, surfaces: texels, triangles };
-        scraps::join_scraps(&map, Self::of_tiles(tiles, texels))
+        scraps::join_scraps(&map, stitches::stitch(&map, Self::of_tiles(tiles, texels)))
     }
 
     /// Those of texels of several tiles.

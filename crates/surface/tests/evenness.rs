@@ -4,7 +4,7 @@ mod even_light;
 mod shapes;
 
 use diacaustic_scene::Mesh;
-use diacaustic_surface::{MapLayout, Welds};
+use diacaustic_surface::{MapLayout, Weld, Welds};
 use even_light::{Surface, Unevenness, check_deposits};
 use glam::Vec3;
 use proptest::{
@@ -173,10 +173,30 @@ fn welds_are_small() {
     ] {
         let object = shapes::object(mesh);
         let welds = Surface::new(&object, MapLayout::new(&object, map_size)).welds().welds;
-        let mut sizes: Vec<usize> = welds.iter().map(|weld| weld.sources.len()).collect();
-        sizes.sort_unstable();
-        let mean = sizes.iter().sum::<usize>() as f64 / sizes.len() as f64;
-        println!("{name}: {} welds, mean {mean:.2} texels, most {:?}", sizes.len(), sizes.last());
-        assert!(sizes.len() > 100 && mean < 8.0 && sizes[sizes.len() / 2] <= 3, "{name}: {mean}");
+        // Texels that lie between several welds count by their parts.
+        let texels = |weld: &Weld| weld.sources.iter().map(|part| part.weight).sum::<f64>();
+        let mut sizes: Vec<f64> = welds.iter().map(texels).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        let (mean, median) = (sizes.iter().sum::<f64>() / sizes.len() as f64, sizes[sizes.len() / 2]);
+        println!("{name}: {} welds, mean {mean:.2} texels, median {median:.2}, most {:?}", sizes.len(), sizes.last());
+        assert!(sizes.len() > 100 && mean < 8.0 && median < 3.5, "{name}: {mean}, {median}");
+    }
+}
+
+/// Where a surface goes on smoothly from one chart to another, what is shown of even light does not jump.
+#[test]
+fn smooth_surfaces_show_no_seams() {
+    for (name, mesh, map_size) in [
+        ("sphere", Mesh::sphere(Vec3::ZERO, 1.0, 5), 96),
+        ("torus knot", shapes::torus_knot(300, 16), 300),
+        ("teapot", shapes::teapot(), 300),
+    ] {
+        let object = shapes::object(mesh);
+        let surface = Surface::new(&object, MapLayout::new(&object, map_size));
+        let lit = surface.lit_evenly((PHOTONS * surface.whole_texels()) as u32);
+        let [welded, alone] =
+            [surface.welds(), Welds::default()].map(|welds| surface.jumps(&surface.shown(&lit, &welds)));
+        println!("{name}: {} edges, mean squared jump {:.5}, {:.5} if texels stand alone", welded.1, welded.0, alone.0);
+        assert!(welded.1 > 100 && welded.0 < 0.1 * alone.0, "{name}: {welded:?}, {alone:?}");
     }
 }

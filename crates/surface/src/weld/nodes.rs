@@ -79,6 +79,14 @@ impl<'t> Nodes<'t> {
         self.map.surfaces.len() as u64
     }
 
+    /// The area of a texel's chart, in whole texels, and its number, if it is neither small nor a cell.
+    pub(super) fn large_chart(&self, tile: &MapTile, texel: u64) -> Option<(f64, usize)> {
+        let TexelChart::One(_) = self.map.surfaces[texel as usize].chart else { return None };
+        let chart = self.chart(tile, texel)?;
+        let area = self.charts[chart].area;
+        (area >= SMALL_CHART * self.density).then_some((area, chart))
+    }
+
     /// The nodes that a texel takes its irradiance from: itself, or welds.
     pub(super) fn of_texel(&self, texel: u64) -> Vec<u64> {
         match self.welds.linked.binary_search_by_key(&texel, |(texel, _)| *texel) {
@@ -218,4 +226,9 @@ pub(super) fn place(tile: &MapTile, texel: u64) -> [u64; 2] {
 fn most_covered(tile: &MapTile, at: [u64; 2]) -> f64 {
     let along = |axis: usize| if at[axis] == 0 || at[axis] == u64::from(tile.cells[axis]) { 0.5 } else { 1.0 };
     along(0) * along(1)
+}
+
+/// Whether a texel of a chart covers less than it can.
+pub(super) fn is_at_border(map: &Map<'_>, tile: &MapTile, texel: u64) -> bool {
+    f64::from(map.surfaces[texel as usize].covered) < WHOLE * most_covered(tile, place(tile, texel))
 }

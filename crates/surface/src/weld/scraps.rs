@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::{
     Map, Weld, WeldPart, Welds,
     nodes::{Nodes, Scrap},
-    seams::{FACING, Seam, seams},
+    seams::{Beside, FACING, Seam, seams},
 };
 
 /// Nodes of a group from which on what lies beside it on other charts is joined first: where a chart is thinner than texels for long.
@@ -119,10 +119,10 @@ impl Scraps<'_> {
             if wanted.is_empty() { Vec::new() } else { seams(self.nodes.map, &wanted) }
         {
             let first = texels.partition_point(|&(other, _)| other < texel);
-            let across: Vec<(u64, DVec3)> = beside
-                .into_iter()
-                .flat_map(|(texel, normal)| self.nodes.of_texel(texel).into_iter().map(move |node| (node, normal)))
-                .collect();
+            let across = beside.into_iter().flat_map(|Beside { texel, normal, .. }| {
+                self.nodes.of_texel(texel).into_iter().map(move |node| (node, normal))
+            });
+            let across: Vec<(u64, DVec3)> = across.collect();
             for (_, root) in texels[first..].iter().take_while(|(other, _)| *other == texel) {
                 if let Some(group) = self.groups.get_mut(self.group_of[*root as usize] as usize) {
                     group.normal += normal;

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{
-    Map,
+    Map, WeldPart,
     near::{Box3, BoxTree, bounds, nearest},
     nodes::place,
 };
@@ -24,8 +24,20 @@ pub(super) struct Seam {
     pub texel: u64,
     /// The unit normal of its surface, on the side of its layer.
     pub normal: DVec3,
-    /// Texels of other charts there, with their surfaces' normals.
-    pub beside: Vec<(u64, DVec3)>,
+    /// What is there of other charts.
+    pub beside: Vec<Beside>,
+}
+
+/// What is beside a texel on another chart.
+pub(super) struct Beside {
+    /// The texel nearest to the place on the plane that is nearest in space.
+    pub texel: u64,
+    /// The texels of the chart around that place, by the weights with which they are read there.
+    pub around: Vec<WeldPart>,
+    /// The unit normal of the surface, on the side of the layer.
+    pub normal: DVec3,
+    /// Metres.
+    pub distance: f64,
 }
 
 /// What stands for a texel's surface: the point of it nearest to the texel on the plane.
@@ -111,12 +123,14 @@ fn seam(map: &Map<'_>, stand: &Stand, triangles: &NearTriangles) -> Seam {
         }
     });
     charts.sort_unstable_by_key(|(_, nearest)| nearest.triangle);
-    let texel = |(chart, Nearest { triangle, at, .. }): (TexelChart, Nearest)| {
+    let beside = |(chart, Nearest { triangle, at, distance }): (TexelChart, Nearest)| {
         let triangle = &map.triangles[triangle];
         let (layer, normal) = facing_layer(map, stand, unit_normal(triangle))?;
-        Some((texel_at(map, layer, plane_point(map, triangle, at), chart)?, normal))
+        let place = plane_point(map, triangle, at);
+        let around = texels_around(map, layer, place, chart);
+        Some(Beside { texel: texel_at(map, layer, place, chart)?, around, normal, distance })
     };
-    Seam { texel: stand.texel, normal: stand.normal, beside: charts.into_iter().filter_map(texel).collect() }
+    Seam { texel: stand.texel, normal: stand.normal, beside: charts.into_iter().filter_map(beside).collect() }
 }
 
 /// The layer on which a triangle is seen as a texel's surface is, and its normal there.
@@ -194,4 +208,25 @@ fn texel_at(map: &Map<'_>, layer: u32, at: DVec2, chart: TexelChart) -> Option<u
     let here = ((at - map.tiles.origin(tile)) / map.tiles.cell_size(tile)).round().clamp(DVec2::ZERO, last);
     let texel = tile.first_texel + here.y as u64 * (u64::from(tile.cells[0]) + 1) + here.x as u64;
     (map.surfaces[texel as usize].chart == chart).then_some(texel)
+}
+
+/// The texels of a chart between which a place lies, with the weights with which they are read there.
+fn texels_around(map: &Map<'_>, layer: u32, at: DVec2, chart: TexelChart) -> Vec<WeldPart> {
+    let Some(tile) = map.tiles.at(layer, at) else { return Vec::new() };
+    let last = DVec2::new(tile.cells[0].into(), tile.cells[1].into()) - 1.0;
+    let at = (at - map.tiles.origin(tile)) / map.tiles.cell_size(tile);
+    let cell = at.floor().clamp(DVec2::ZERO, last);
+    let f = (at - cell).clamp(DVec2::ZERO, DVec2::ONE);
+    let first = tile.first_texel + cell.y as u64 * (u64::from(tile.cells[0]) + 1) + cell.x as u64;
+    let above = first + u64::from(tile.cells[0]) + 1;
+    let corners = [
+        (first, (1.0 - f.x) * (1.0 - f.y)),
+        (first + 1, f.x * (1.0 - f.y)),
+        (above, (1.0 - f.x) * f.y),
+        (above + 1, f.x * f.y),
+    ];
+    let is_own = |&(texel, weight): &(u64, f64)| weight > 0.0 && map.surfaces[texel as usize].chart == chart;
+    let own: Vec<(u64, f64)> = corners.into_iter().filter(is_own).collect();
+    let whole: f64 = own.iter().map(|(_, weight)| weight).sum();
+    own.into_iter().map(|(index, weight)| WeldPart { index, weight: weight / whole }).collect()
 }

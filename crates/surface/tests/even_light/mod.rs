@@ -1,6 +1,8 @@
 //! Surfaces on which photons fall evenly, and what their maps show.
 #![allow(dead_code, reason = "each user takes some of it")]
 
+use std::collections::HashMap;
+
 use diacaustic_scene::Object;
 use diacaustic_surface::{MapLayout, MapTiles, TexelChart, TexelSurface, Welds, WorldTriangle, texel_surfaces};
 use glam::{Vec2, Vec3};
@@ -147,6 +149,34 @@ impl Surface {
             texels[texel].squares += (share as f64 / UNITS as f64).powi(2);
         }
         texels
+    }
+
+    /// The mean squared difference of what is shown on both sides of edges between charts whose triangles face within 37°, and how many there are.
+    pub fn jumps(&self, shown: &[f64]) -> (f64, usize) {
+        let mut sides: HashMap<[[u32; 3]; 2], (usize, usize)> = HashMap::new();
+        let (mut squares, mut count) = (0.0, 0u32);
+        for (number, triangle) in self.triangles.iter().enumerate() {
+            let corners = triangle.corners.map(|p| p.to_array().map(f32::to_bits));
+            for edge in 0..3 {
+                let next = (edge + 1) % 3;
+                let Some((other, other_edge)) = sides.remove(&[corners[next], corners[edge]]) else {
+                    sides.insert([corners[edge], corners[next]], (number, edge));
+                    continue;
+                };
+                let pair = [number, other].map(|k| self.triangles[k]);
+                let [a, b] = pair.map(|triangle| triangle.double_area_normal().normalize());
+                let charts = pair.map(|triangle| self.layout.charts[triangle.triangle as usize]);
+                if charts[0] != charts[1] && a.dot(b) > 0.8 {
+                    let middle = |number: usize, edge: usize| {
+                        let at = [[0.5, 0.0], [0.5, 0.5], [0.0, 0.5]][edge];
+                        read(&self.deposit(number, 0, at), shown)
+                    };
+                    squares += (middle(number, edge) - middle(other, other_edge)).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        (squares / f64::from(count), count as usize)
     }
 
     /// The irradiance that follows from photons by some welds, over its mean.
