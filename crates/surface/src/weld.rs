@@ -1,5 +1,6 @@
 //! How the tiles of a map join: texels of several tiles that stand at one place are one, and texels on the border of a coarser tile lie
-//! between its texels, so that irradiance has no jumps; and scraps at charts' borders are one with what is beside them.
+//! between its texels, so that irradiance has no jumps; charts are stitched where the surface goes on smoothly; and scraps at charts' borders are
+//! one with what is beside them.
 
 mod near;
 mod nodes;
@@ -17,7 +18,7 @@ const STEP_BITS: u32 = 8;
 /// How the tiles of a map join.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Welds {
-    /// Places at which texels of several tiles meet, and scraps with what they are one with.
+    /// Places at which texels of several tiles or charts meet, and scraps with what they are one with.
     pub welds: Vec<Weld>,
     /// The texels that get their irradiance from welds, in order, each with those that it lies between.
     pub linked: Vec<(u64, Vec<WeldPart>)>,
