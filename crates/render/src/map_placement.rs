@@ -75,7 +75,10 @@ pub(crate) fn place_maps(
         next_texel += tiles.texel_count();
         let surfaces = plan.texel_surfaces(&tiles);
         // The paper divides every texel's sum by the same.
-        let welds = if plan.paper_size.is_some() { Welds::default() } else { Welds::new(&tiles, &surfaces) };
+        let welds = match plan.paper_size {
+            Some(_) => Welds::default(),
+            None => Welds::new(&plan.layout, &tiles, &surfaces, &plan.receivers),
+        };
         let welds = Arc::new(welds);
         Some(MapPlacement { first_texel, surfaces, welds, tiles, layout: plan.layout, paper_size: plan.paper_size })
     });

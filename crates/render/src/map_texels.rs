@@ -59,7 +59,7 @@ impl Lists {
         let charts = map.surfaces.iter().map(|texel| match texel.chart {
             TexelChart::None => 0,
             TexelChart::One(chart) => chart + 1,
-            TexelChart::Several => NONE,
+            TexelChart::Cell(_) | TexelChart::Several => NONE,
         });
         let mut texels = map.divisors().zip(charts);
         for tile in &map.tiles.tiles {

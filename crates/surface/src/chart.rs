@@ -121,7 +121,7 @@ impl MapLayout {
     /// The chart of a triangle of the object's mesh.
     pub(crate) fn chart_of(&self, triangle: u32) -> TexelChart {
         match self.charts.get(triangle as usize).copied().unwrap_or(0) {
-            cell if cell + self.cell_count >= self.chart_count && self.cell_count > 0 => TexelChart::Several,
+            cell if cell + self.cell_count >= self.chart_count && self.cell_count > 0 => TexelChart::Cell(cell),
             chart => TexelChart::One(chart),
         }
     }

@@ -19,14 +19,16 @@ pub struct TexelSurface {
 }
 
 /// The chart of what lies behind a texel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum TexelChart {
     /// There is no surface.
     #[default]
     None,
     /// All is of this one.
     One(u32),
-    /// Several charts share the texel, or it is of a cell, in which pieces of surface lie on one another.
+    /// This one, a cell, in which pieces of surface lie on one another.
+    Cell(u32),
+    /// Several charts share the texel.
     Several,
 }
 

@@ -1,11 +1,16 @@
 //! How the tiles of a map join: texels of several tiles that stand at one place are one, and texels on the border of a coarser tile lie
-//! between its texels, so that irradiance has no jumps; and scraps at charts' borders are one with what is beside them.
+//! between its texels, so that irradiance has no jumps; charts are stitched where the surface goes on smoothly; and scraps at charts' borders are
+//! one with what is beside them.
 
+mod near;
+mod nodes;
 mod scraps;
+mod seams;
+mod stitches;
 
 use std::collections::HashMap;
 
-use crate::{MapTile, MapTiles, TexelChart, TexelSurface, tile::FINEST_LEVEL};
+use crate::{MapLayout, MapTile, MapTiles, TexelChart, TexelSurface, WorldTriangle, tile::FINEST_LEVEL};
 
 /// Steps along a square of the finest level: the most cells of a tile that is joined to others, as a power of two.
 const STEP_BITS: u32 = 8;
@@ -13,7 +18,7 @@ const STEP_BITS: u32 = 8;
 /// How the tiles of a map join.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Welds {
-    /// Places at which texels of several tiles meet, and scraps with what they are one with.
+    /// Places at which texels of several tiles or charts meet, and scraps with what they are one with.
     pub welds: Vec<Weld>,
     /// The texels that get their irradiance from welds, in order, each with those that it lies between.
     pub linked: Vec<(u64, Vec<WeldPart>)>,
@@ -39,14 +44,37 @@ pub struct WeldPart {
     pub weight: f64,
 }
 
+/// A map whose texels are joined.
+struct Map<'t> {
+    layout: &'t MapLayout,
+    tiles: &'t MapTiles,
+    surfaces: &'t [TexelSurface],
+    triangles: &'t [WorldTriangle],
+}
+
+impl Map<'_> {
+    /// The tile of a texel.
+    fn tile(&self, texel: u64) -> &MapTile {
+        &self.tiles.tiles[self.tiles.tiles.partition_point(|tile| tile.first_texel <= texel) - 1]
+    }
+
+    /// The surface that a texel of a tile would have on a chart that is neither tilted nor scaled, m².
+    fn metric_area(&self, tile: &MapTile) -> f64 {
+        self.tiles.cell_size(tile).element_product() * f64::from(self.layout.metres_per_texel).powi(2)
+    }
+}
+
 /// A place of a layer's plane, in steps of 2^-`STEP_BITS` of the finest squares.
 type Place = [u64; 2];
 
 impl Welds {
     /// The welds of a map's tiles, whose texels have the given surfaces. Texels are joined where they are of one chart. Tiles whose cells are
     /// no power of two along both axes, as of a map of a stated size, are alone in their layer.
-    pub fn new(tiles: &MapTiles, texels: &[TexelSurface]) -> Self {
-        scraps::join_scraps(tiles, texels, Self::of_tiles(tiles, texels))
+    ///
+    /// `triangles` are the object's, in any order; those without an area may be missing.
+    pub fn new(layout: &MapLayout, tiles: &MapTiles, texels: &[TexelSurface], triangles: &[WorldTriangle]) -> Self {
+        let map = Map { layout, tiles, surfaces: texels, triangles };
+        scraps::join_scraps(&map, stitches::stitch(&map, Self::of_tiles(tiles, texels)))
     }
 
     /// Those of texels of several tiles.
@@ -279,7 +307,7 @@ mod tests {
             let tiles = tree(&splits);
             let texels = flat(&tiles, |_| 0);
             let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
-            let welds = Welds::new(&tiles, &texels);
+            let welds = Welds::new(&LAYOUT, &tiles, &texels, &[]);
             let even = welds.irradiance(&areas.iter().map(|area| 3.0 * area).collect::<Vec<f64>>(), &areas);
             prop_assert!(even.iter().all(|value| (value - 3.0).abs() < 1e-12));
 
@@ -315,7 +343,7 @@ mod tests {
             let texels = flat(&tiles, |place| u32::from(place.x > border));
             let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
             let flux = texels.iter().map(|texel| if texel.chart == TexelChart::One(0) { texel.area } else { 0.0 });
-            let irradiance = Welds::new(&tiles, &texels).irradiance(&flux.collect::<Vec<f64>>(), &areas);
+            let irradiance = Welds::new(&LAYOUT, &tiles, &texels, &[]).irradiance(&flux.collect::<Vec<f64>>(), &areas);
             for (texel, value) in texels.iter().zip(irradiance) {
                 let own = if texel.chart == TexelChart::One(0) { 1.0 } else { 0.0 };
                 prop_assert!((value - own).abs() < 1e-12, "{texel:?}: {value}");
@@ -326,7 +354,7 @@ mod tests {
     #[test]
     fn a_map_of_one_tile_has_nothing_to_join() {
         let tiles = MapTiles::dense(&LAYOUT);
-        assert_eq!(Welds::new(&tiles, &flat(&tiles, |_| 0)), Welds::default());
+        assert_eq!(Welds::new(&LAYOUT, &tiles, &flat(&tiles, |_| 0), &[]), Welds::default());
     }
 
     /// Texels of a plane of which what lies below a line is one chart, with the surface behind each.
@@ -356,7 +384,7 @@ mod tests {
             for tiles in [tree(&splits), MapTiles::dense(&LAYOUT)] {
                 let texels = below_a_line(&tiles, slope, height);
                 let areas: Vec<f64> = texels.iter().map(|texel| texel.area).collect();
-                let welds = Welds::new(&tiles, &texels);
+                let welds = Welds::new(&LAYOUT, &tiles, &texels, &[]);
                 let even = welds.irradiance(&areas.iter().map(|area| 3.0 * area).collect::<Vec<f64>>(), &areas);
                 let is_even = |(value, area): (&f64, &f64)| *area == 0.0 || (value - 3.0).abs() < 1e-9;
                 prop_assert!(even.iter().zip(&areas).all(is_even));

@@ -1,11 +1,13 @@
 //! Charts: what they promise, on many shapes.
 
+mod even_light;
 mod shapes;
 
 use std::collections::BTreeMap;
 
 use diacaustic_scene::{Chart, Mesh, Object};
-use diacaustic_surface::{MapLayout, MapTiles, Welds, WorldTriangle, texel_areas, texel_surfaces};
+use diacaustic_surface::{MapLayout, MapTiles, WorldTriangle, texel_areas};
+use even_light::{Surface, UNITS, area, check_deposits, world_triangles};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
@@ -14,26 +16,6 @@ fn layer_areas(layout: &MapLayout, triangles: &[WorldTriangle]) -> Vec<f64> {
     let mut areas = texel_areas(layout, &MapTiles::dense(layout), triangles);
     areas.truncate(areas.len() / layout.layers as usize);
     areas
-}
-
-fn world_triangles(object: &Object) -> Vec<WorldTriangle> {
-    let place = |p: Vec3| object.world_from_object.transform_point3(p);
-    let triangle = |number: usize| WorldTriangle {
-        corners: object.mesh.corners(number).map(place),
-        normals: None,
-        uvs: None,
-        object: 0,
-        triangle: number as u32,
-        material: 0,
-        exchanged: false,
-    };
-    let all = (0..object.mesh.triangles.len()).map(triangle);
-    all.filter(|triangle| triangle.double_area_normal() != Vec3::ZERO).collect()
-}
-
-fn area(triangle: &WorldTriangle) -> f64 {
-    let [a, b, c] = triangle.corners.map(Vec3::as_dvec3);
-    0.5 * (b - a).cross(c - a).length()
 }
 
 fn places(layout: &MapLayout, triangle: usize) -> [DVec2; 3] {
@@ -122,173 +104,6 @@ fn check_plane(object: &Object, layout: &MapLayout) {
             }
         }
     }
-}
-
-/// Units of a photon's flux.
-const UNITS: i64 = 1 << 24;
-
-/// A photon's texels and its shares there.
-type Deposit = [(usize, i64); 4];
-
-/// Points spread evenly over the surface, each with the texels around it and their shares of a photon, as the kernel lays them.
-fn even_points<'a>(
-    layout: &'a MapLayout,
-    triangles: &'a [WorldTriangle],
-    points: std::ops::Range<u32>,
-) -> impl Iterator<Item = Deposit> + 'a {
-    let ends: Vec<f64> = triangles
-        .iter()
-        .scan(0.0, |sum, triangle| {
-            *sum += area(triangle);
-            Some(*sum)
-        })
-        .collect();
-    points.map(move |point| {
-        let [pick, u, v] = [0, 1, 2].map(|k| shapes::hashed(3 * point + k));
-        let number = ends.partition_point(|end| *end <= pick * ends[ends.len() - 1]).min(triangles.len() - 1);
-        let c = layout.corners[triangles[number].triangle as usize];
-        let b = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] }.map(|x| x as f32);
-        let at = (1.0 - b[0] - b[1]) * c[0] + b[0] * c[1] + b[1] * c[2];
-        let cell = at.floor().clamp(Vec2::ZERO, Vec2::new((layout.width - 2) as f32, (layout.height - 2) as f32));
-        let f = (at - cell).clamp(Vec2::ZERO, Vec2::ONE);
-        let weights = [(1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y];
-        let [a, b, c] = weights.map(|weight| (UNITS as f32 * weight).round() as i64);
-        let width = layout.width as usize;
-        let first = cell.y as usize * width + cell.x as usize;
-        [(first, a), (first + 1, b), (first + width, c), (first + width + 1, UNITS - a - b - c)]
-    })
-}
-
-/// A texel's sum of flux and of the squares of its shares.
-#[derive(Clone, Copy, Default)]
-struct Texel {
-    sum: i64,
-    squares: f64,
-}
-
-/// Lays photons on points spread evenly over the surface.
-fn lit_evenly(layout: &MapLayout, triangles: &[WorldTriangle], photons: u32) -> Vec<Texel> {
-    let mut texels = vec![Texel::default(); layout.width as usize * layout.height as usize];
-    for (texel, share) in even_points(layout, triangles, 0..photons).flatten() {
-        texels[texel].sum += share;
-        texels[texel].squares += (share as f64 / UNITS as f64).powi(2);
-    }
-    texels
-}
-
-/// Evenly lit, a surface shows one irradiance: at the borders of charts as inside them.
-fn check_even_light(name: &str, object: &Object, layout: &MapLayout, photons: u32) {
-    let triangles = world_triangles(object);
-    let areas = layer_areas(layout, &triangles);
-    let surface: f64 = areas.iter().sum();
-    // How much of a texel's surroundings on the plane is covered: all of it inside a chart.
-    let flat =
-        |t: &WorldTriangle| WorldTriangle { corners: layout.corners[t.triangle as usize].map(|p| p.extend(0.0)), ..*t };
-    let covered = layer_areas(layout, &triangles.iter().map(flat).collect::<Vec<_>>());
-    let texels = lit_evenly(layout, &triangles, photons);
-    assert_eq!(texels.iter().map(|texel| texel.sum).sum::<i64>(), i64::from(photons) * UNITS, "{name}");
-
-    let mut counted = 0;
-    for (place, is_border) in [("inside charts", false), ("at their borders", true)] {
-        let (mut bias, mut variance, mut squares, mut count) = (0.0, 0.0, 0.0, 0);
-        for (texel, (&area, &covered)) in texels.iter().zip(areas.iter().zip(&covered)) {
-            assert!(area > 0.0 || texel.sum == 0, "{name}: light on a texel without surface");
-            let expected = f64::from(photons) * area / surface;
-            if (covered < 0.999) != is_border {
-                continue;
-            }
-            let deviation = texel.sum as f64 / UNITS as f64 - expected;
-            bias += deviation;
-            variance += texel.squares;
-            if expected > 8.0 {
-                squares += deviation * deviation / texel.squares;
-                count += 1;
-            }
-        }
-        if count < 20 {
-            continue;
-        }
-        counted += count;
-        // Shares of one photon fall on neighbours, so that the variance of the sum is up to four times the sum of theirs.
-        assert!(bias.abs() < 5.0 * (4.0 * variance).sqrt(), "{name}: {bias} of {variance} {place}");
-        let deviation = squares / f64::from(count);
-        let spread = 6.0 * (2.0 / f64::from(count)).sqrt() + 0.03;
-        assert!((deviation - 1.0).abs() < spread, "{name}: {deviation} ± {spread} times the variance expected {place}");
-    }
-    assert!(counted > 500, "{name}: {counted} texels");
-    if covered.iter().filter(|&&covered| covered > 0.999).count() > 500 {
-        let is_border: Vec<bool> = covered.iter().map(|&covered| covered < 0.999).collect();
-        check_shown(name, layout, &triangles, &texels, &is_border);
-    }
-}
-
-/// What evenly lit surfaces show deviates no more near the borders of charts than inside: the mean square over places of the surface.
-fn check_shown(name: &str, layout: &MapLayout, triangles: &[WorldTriangle], texels: &[Texel], is_border: &[bool]) {
-    let tiles = MapTiles::dense(&MapLayout { layers: 1, ..layout.clone() });
-    let surfaces = texel_surfaces(&MapLayout { layers: 1, ..layout.clone() }, &tiles, triangles);
-    let flux: Vec<f64> = texels.iter().map(|texel| texel.sum as f64 / UNITS as f64).collect();
-    let areas: Vec<f64> = surfaces.iter().map(|texel| texel.area).collect();
-    let mean = flux.iter().sum::<f64>() / areas.iter().sum::<f64>();
-    let deviations = |welds: &Welds| {
-        let irradiance = welds.irradiance(&flux, &areas);
-        let mut sums = [[0.0; 3]; 2];
-        for place in even_points(layout, triangles, 1_000_000..1_300_000) {
-            let shown =
-                place.iter().map(|&(texel, share)| share as f64 / UNITS as f64 * irradiance[texel]).sum::<f64>();
-            let square = (shown / mean - 1.0).powi(2);
-            let sum = &mut sums[usize::from(place.iter().any(|&(texel, _)| is_border[texel]))];
-            *sum = [sum[0] + square, sum[1] + 1.0, square.max(sum[2])];
-        }
-        sums.map(|[sum, count, most]| [sum / count, most])
-    };
-    let [[inside, _], [border, most]] = deviations(&Welds::new(&tiles, &surfaces));
-    let [_, [rough, most_rough]] = deviations(&Welds::default());
-    println!(
-        "{name}: mean squared deviation {inside:.4} inside, {border:.4} near borders ({rough:.4} if texels stand alone), \
-         the largest {most:.2} ({most_rough:.2})"
-    );
-    // Light inside is a mean over about four texels, so that a quarter of them count.
-    let [near, all] = [is_border.iter().filter(|&&border| border).count(), is_border.len()].map(|n| 0.25 * n as f64);
-    let chance = 3.0 * (2.0 / near + 2.0 / (all - near)).sqrt();
-    assert!(border < (1.1 + chance) * inside, "{name}: {border} near borders, {inside} inside, {chance} by chance");
-    assert!(border < rough, "{name}: {border} near borders, {rough} as texels are");
-}
-
-fn check_shape(name: &str, mesh: Mesh, map_size: u32) {
-    let object = shapes::object(mesh);
-    let layout = MapLayout::new(&object, map_size);
-    assert!(layout.width.max(layout.height) <= map_size, "{name}: {} × {}", layout.width, layout.height);
-    assert!(layout.width.max(layout.height) > map_size * 9 / 10, "{name}: {} × {}", layout.width, layout.height);
-    check_layout(&object, &layout);
-    check_even_light(name, &object, &layout, 600_000);
-}
-
-#[test]
-fn sphere_is_lit_evenly() {
-    check_shape("sphere", Mesh::sphere(Vec3::ZERO, 1.0, 5), 96);
-}
-
-#[test]
-fn torus_knot_is_lit_evenly() {
-    check_shape("torus knot", shapes::torus_knot(300, 16), 160);
-}
-
-#[test]
-fn l_shaped_room_is_lit_evenly() {
-    check_shape("room", shapes::l_room(), 96);
-}
-
-#[test]
-fn teapot_is_lit_evenly() {
-    check_shape("teapot", shapes::teapot(), 160);
-}
-
-#[test]
-fn scanned_surface_is_lit_evenly() {
-    let mesh = shapes::scanned(180, 0.5);
-    assert!(mesh.triangles.len() >= 100_000);
-    check_shape("scanned", mesh, 160);
-    check_shape("rough", shapes::scanned(180, 3.0), 160);
 }
 
 #[test]
@@ -384,12 +199,8 @@ fn texels_are_few_however_small_the_triangles() {
             println!("{name}: {texels} texels for {asked}, {} charts, {} cells", layout.chart_count, layout.cell_count);
             assert!(texels < 5.0 * asked + 100.0, "{name}: {texels} texels where the area asks for {asked}");
         }
-        check_even_light(
-            name,
-            &object,
-            &MapLayout::with_texel_width(&object, (surface / 4000.0).sqrt() as f32),
-            200_000,
-        );
+        let layout = MapLayout::with_texel_width(&object, (surface / 4000.0).sqrt() as f32);
+        check_deposits(name, &Surface::new(&object, layout), 200_000);
     }
 }
 
@@ -447,46 +258,29 @@ fn placement_counts() {
     check_plane(&object, &layout);
 }
 
-prop_compose! {
-    /// Any mesh at all: triangles over few points, some of which coincide, lie on a line or are far away.
-    fn any_mesh()(
-        points in prop::collection::vec(prop::array::uniform3(-4i8..4), 3..12),
-        free in prop::collection::vec(prop::array::uniform3(-1.0f32..1.0), 0..12),
-        scale in prop::sample::select(vec![1e-6f32, 1.0, 1e6]),
-        picks in prop::collection::vec(prop::array::uniform3(0usize..100), 1..60),
-    ) -> Mesh {
-        let mut positions: Vec<Vec3> = points.iter().map(|p| scale * Vec3::from(p.map(f32::from))).collect();
-        positions.extend(free.iter().map(|p| scale * Vec3::from(*p)));
-        let count = positions.len();
-        let triangles = picks.iter().map(|triangle| triangle.map(|v| (v % count) as u32)).collect();
-        Mesh { positions, triangles, ..Mesh::default() }
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_mesh_has_charts(mesh in any_mesh(), map_size in 2u32..200) {
+    fn any_mesh_has_charts(mesh in shapes::any_mesh(), map_size in 2u32..200) {
         let object = shapes::object(mesh);
         let layout = MapLayout::new(&object, map_size);
         let triangles = world_triangles(&object);
         check_layout(&object, &layout);
         if !triangles.is_empty() {
-            let deposited: i64 = lit_evenly(&layout, &triangles, 100).iter().map(|texel| texel.sum).sum();
+            let surface = Surface::new(&object, layout);
+            let deposited: i64 = surface.lit_evenly(100).iter().map(|texel| texel.sum).sum();
             prop_assert_eq!(deposited, 100 * UNITS);
             // Even light is even, however small the parts of charts that texels hold.
-            let tiles = MapTiles::dense(&layout);
-            let surfaces = texel_surfaces(&layout, &tiles, &triangles);
-            let areas: Vec<f64> = surfaces.iter().map(|texel| texel.area).collect();
-            let shown = Welds::new(&tiles, &surfaces).irradiance(&areas, &areas);
+            let areas = surface.areas();
+            let shown = surface.welds().irradiance(&areas, &areas);
             let is_even = |(value, area): (&f64, &f64)| *area <= 0.0 || (value - 1.0).abs() < 1e-6;
             prop_assert!(shown.iter().zip(&areas).all(is_even));
         }
     }
 
     #[test]
-    fn charts_of_any_mesh_do_not_overlap(mesh in any_mesh()) {
+    fn charts_of_any_mesh_do_not_overlap(mesh in shapes::any_mesh()) {
         let object = shapes::object(mesh);
         let layout = MapLayout::new(&object, 400);
         if layout.cell_count == 0 && layout.width.max(layout.height) <= 400 {

@@ -1,196 +1,264 @@
 //! Texels that hold but a scrap of their chart, at its border: a photon there would make a speck. They become one with texels beside them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 
-use super::{Weld, WeldPart, Welds};
-use crate::{MapTile, MapTiles, TexelChart, TexelSurface};
+use glam::DVec3;
 
-/// Share of a whole texel below which a texel is a scrap. What is shown inside a chart is a mean over about four texels, for photons are laid
-/// and read bilinearly; with less than this, borders are grainier.
-const SCRAP: f64 = 0.85;
-/// Share of what a texel can hold on its tile from which on it is whole.
-const WHOLE: f64 = 0.99;
+use super::{
+    Map, Weld, WeldPart, Welds,
+    nodes::{Nodes, Scrap},
+    seams::{Beside, FACING, Seam, seams},
+};
 
-/// Nodes of a group that is given up if it does not cover enough by then: where a chart is thinner than texels for long, there is nothing to join.
+/// Nodes of a group from which on what lies beside it on other charts is joined first: where a chart is thinner than texels for long.
+const MANY_NODES: usize = 16;
+/// Nodes of a group from which on it joins others only if it must, and no more of its own chart.
 const MOST_NODES: usize = 64;
+/// Nodes of a group that is given up if it has not enough surface by then.
+const MOST_JOINED: usize = 256;
 
-/// Joins scraps to what is beside them in the same chart, the smallest first, until together they are large enough.
-pub(super) fn join_scraps(tiles: &MapTiles, surfaces: &[TexelSurface], welds: Welds) -> Welds {
-    let mut scraps = Scraps { tiles, surfaces, welds, parents: BTreeMap::new(), groups: HashMap::new() };
-    for (node, least) in scraps.find() {
-        scraps.grow(node, least);
+/// Joins scraps to what is beside them in the same chart, the smallest first, until together they are large enough; where the chart has no more,
+/// to what is beside them on others.
+pub(super) fn join_scraps(map: &Map<'_>, welds: Welds) -> Welds {
+    let nodes = Nodes::new(map, &welds);
+    let count = map.surfaces.len() + welds.welds.len();
+    let mut scraps = Scraps { nodes, parents: vec![NONE; count], group_of: vec![NONE; count], groups: Vec::new() };
+    for chart in scraps.nodes.small_charts() {
+        scraps.join_all(chart);
     }
-    if scraps.parents.is_empty() { scraps.welds } else { scraps.joined() }
+    for scrap in scraps.nodes.scraps() {
+        scraps.grow(scrap.nodes[0], scrap.least);
+    }
+    scraps.join_charts();
+    if scraps.groups.is_empty() { welds } else { scraps.joined() }
 }
 
-/// A map's nodes, and which of them become one. A node is what is one already: a texel without links, by its index, or a weld, whose numbers
-/// follow those of the texels.
+/// A map's nodes, and which of them become one.
 struct Scraps<'t> {
-    tiles: &'t MapTiles,
-    surfaces: &'t [TexelSurface],
-    welds: Welds,
-    /// The next node towards the root of a node's group, where that is another one.
-    parents: BTreeMap<u64, u64>,
-    /// Groups of several nodes, by their roots.
-    groups: HashMap<u64, Group>,
+    nodes: Nodes<'t>,
+    /// For each node the next towards the root of its group, or [`NONE`] of a root.
+    parents: Vec<u32>,
+    /// The number of the group of each root, or [`NONE`] of a node alone.
+    group_of: Vec<u32>,
+    groups: Vec<Group>,
 }
+
+/// No node or group.
+const NONE: u32 = u32::MAX;
 
 /// Nodes that become one.
+#[derive(Default)]
 struct Group {
-    /// The plane that they cover, in the layout's texels squared.
-    covered: f64,
+    /// Their surface, m².
+    area: f64,
     nodes: Vec<u64>,
+    /// Nodes beside them in their charts, in any order.
+    beside: Vec<u64>,
+    /// The area that they should have, but do not find in their chart, m²; 0 of others.
+    lacks: f64,
+    /// The sum of the surfaces' normals, and nodes of other charts beside them with theirs; of groups that were stuck.
+    normal: DVec3,
+    across: Vec<(u64, DVec3)>,
+}
+
+impl Group {
+    fn absorb(&mut self, other: Self) {
+        self.area += other.area;
+        self.nodes.extend(other.nodes);
+        self.beside.extend(other.beside);
+        self.normal += other.normal;
+        self.across.extend(other.across);
+        self.lacks = 0.0;
+    }
 }
 
 impl Scraps<'_> {
-    /// The scraps, from the smallest share of a texel on, each with the plane that its group should cover.
-    fn find(&self) -> Vec<(u64, f64)> {
-        let mut found: Vec<(f64, u64, f64)> = Vec::new();
-        for tile in &self.tiles.tiles {
-            let cell = self.tiles.cell_size(tile).element_product();
-            for texel in tile.first_texel..tile.first_texel + tile.texel_count() {
-                let TexelSurface { covered, chart, .. } = self.surfaces[texel as usize];
-                let share = f64::from(covered);
-                let is_scrap = share < SCRAP && share < WHOLE * most_covered(tile, place(tile, texel));
-                if is_scrap && matches!(chart, TexelChart::One(_)) && self.nodes(texel) == [texel] {
-                    found.push((share, texel, SCRAP * cell));
-                }
-            }
-        }
-        for (node, weld) in (self.surfaces.len() as u64..).zip(&self.welds.welds) {
-            let (mut most, mut cell) = (0.0, 0.0);
-            for part in &weld.sources {
-                let tile = self.tile(part.index);
-                let own = self.tiles.cell_size(tile).element_product();
-                most += part.weight * most_covered(tile, place(tile, part.index)) * own;
-                cell = own.max(cell);
-            }
-            let covered = self.node_covers(node);
-            if covered < SCRAP * cell && covered < WHOLE * most {
-                found.push((covered / cell, node, SCRAP * cell));
-            }
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.into_iter().map(|(_, node, least)| (node, least)).collect()
+    /// Makes a group of all nodes of a small chart.
+    fn join_all(&mut self, chart: Scrap) {
+        let Scrap { nodes, least } = chart;
+        let root = nodes[0];
+        nodes[1..].iter().for_each(|&node| self.parents[node as usize] = root as u32);
+        let area = nodes.iter().map(|&node| self.nodes.area(node)).sum();
+        self.put_group(root, Group { area, nodes, lacks: least, ..Group::default() });
     }
 
-    /// Joins the group of a scrap to the largest beside it, until it covers enough or nothing else is there.
+    /// Joins the group of a scrap to what is beside it in its chart, until it covers enough or is stuck.
     fn grow(&mut self, scrap: u64, least: f64) {
         loop {
             let root = self.root(scrap);
-            if self.covered(root) >= least {
+            if self.area(root) >= least || self.group(root).is_some_and(|group| group.lacks >= least) {
                 return;
             }
-            let own = self.take_group(root);
-            if own.nodes.len() >= MOST_NODES {
-                self.groups.insert(root, own);
-                return;
-            }
-            let mut beside: Vec<u64> =
-                own.nodes.iter().flat_map(|&node| self.beside(node)).map(|node| self.root(node)).collect();
-            beside.sort_unstable();
-            beside.dedup();
-            let others = beside.into_iter().filter(|&other| other != root).map(|other| (self.covered(other), other));
-            let Some((_, other)) = others.max_by(|a, b| a.0.total_cmp(&b.0)) else {
-                self.groups.insert(root, own);
+            let mut own = self.take_group(root);
+            let beside = if own.nodes.len() < MANY_NODES { self.roots_beside(root, &own) } else { Vec::new() };
+            let Some(other) = self.fitting(&own, least, beside) else {
+                own.lacks = least;
+                self.put_group(root, own);
                 return;
             };
-            let mut largest = self.take_group(other);
-            largest.covered += own.covered;
-            largest.nodes.extend(own.nodes);
-            self.parents.insert(root, other);
-            self.groups.insert(other, largest);
+            self.join(root, own, other);
         }
     }
 
+    /// Joins groups that are stuck to what is beside them on other charts.
+    fn join_charts(&mut self) {
+        let stuck = self.groups.iter().filter(|group| group.lacks > 0.0 && !group.nodes.is_empty());
+        let mut stuck: Vec<(f64, u64, f64)> =
+            stuck.map(|group| (group.area, self.root(group.nodes[0]), group.lacks)).collect();
+        stuck.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let nodes = stuck.iter().flat_map(|(_, root, _)| {
+            self.group(*root).into_iter().flat_map(|group| &group.nodes).map(move |&node| (node, *root))
+        });
+        let mut texels: Vec<(u64, u64)> = nodes
+            .flat_map(|(node, root)| self.nodes.sources(node).into_iter().map(move |part| (part.index, root)))
+            .collect();
+        texels.sort_unstable();
+        texels.dedup();
+        let wanted: Vec<u64> = texels.iter().map(|&(texel, _)| texel).collect();
+        for Seam { texel, normal, beside } in
+            if wanted.is_empty() { Vec::new() } else { seams(self.nodes.map, &wanted) }
+        {
+            let first = texels.partition_point(|&(other, _)| other < texel);
+            let across = beside.into_iter().flat_map(|Beside { texel, normal, .. }| {
+                self.nodes.of_texel(texel).into_iter().map(move |node| (node, normal))
+            });
+            let across: Vec<(u64, DVec3)> = across.collect();
+            for (_, root) in texels[first..].iter().take_while(|(other, _)| *other == texel) {
+                if let Some(group) = self.groups.get_mut(self.group_of[*root as usize] as usize) {
+                    group.normal += normal;
+                    group.across.extend(&across);
+                }
+            }
+        }
+        for (_, node, least) in stuck {
+            self.grow_across(node, least);
+        }
+    }
+
+    /// Joins the group of a node to what is beside it on other charts, or in its own.
+    fn grow_across(&mut self, node: u64, least: f64) {
+        loop {
+            let root = self.root(node);
+            if self.area(root) >= least {
+                return;
+            }
+            let own = self.take_group(root);
+            let across = self.fitting(&own, least, self.roots_across(root, &own));
+            let is_given_up = own.nodes.len() >= if across.is_some() { MOST_JOINED } else { MOST_NODES };
+            let other =
+                across.or_else(|| self.fitting(&own, least, self.roots_beside(root, &own))).filter(|_| !is_given_up);
+            match other {
+                Some(other) => self.join(root, own, other),
+                None => {
+                    self.put_group(root, own);
+                    return;
+                }
+            }
+        }
+    }
+
+    /// The groups beside one in its chart, by their roots.
+    fn roots_beside(&self, root: u64, own: &Group) -> Vec<u64> {
+        own.beside.iter().map(|&node| self.root(node)).filter(|&other| other != root).collect()
+    }
+
+    /// The groups beside one on other charts that face about as it does.
+    fn roots_across(&self, root: u64, own: &Group) -> Vec<u64> {
+        let is_alike = |&(other, normal): &(u64, DVec3)| {
+            let known = self.group(other).map_or(DVec3::ZERO, |group| group.normal);
+            let normal = if known == DVec3::ZERO { normal } else { known };
+            other != root && normal.dot(own.normal) >= FACING * normal.length() * own.normal.length()
+        };
+        let across = own.across.iter().map(|&(node, normal)| (self.root(node), normal));
+        across.filter(is_alike).map(|(other, _)| other).collect()
+    }
+
+    /// Of groups the one that a group best joins: the smallest that suffices, or else the largest; those that both would be many nodes with last.
+    fn fitting(&self, own: &Group, least: f64, mut others: Vec<u64>) -> Option<u64> {
+        others.sort_unstable();
+        others.dedup();
+        let fit = |other: u64| {
+            let area = self.area(other);
+            let suffices = own.area + area >= least;
+            let is_few = own.nodes.len() + self.group(other).map_or(1, |group| group.nodes.len()) <= MOST_NODES;
+            ((is_few, suffices), if suffices { -area } else { area }, other)
+        };
+        let best = others.into_iter().map(fit).max_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        best.map(|(_, _, other)| other)
+    }
+
+    /// Joins a group, taken out of the list, to another.
+    fn join(&mut self, root: u64, own: Group, other: u64) {
+        let theirs = self.take_group(other);
+        let (root, mut group, joining, joined) =
+            if theirs.area >= own.area { (other, theirs, root, own) } else { (root, own, other, theirs) };
+        group.absorb(joined);
+        self.parents[joining as usize] = root as u32;
+        self.put_group(root, group);
+    }
+
     fn root(&self, mut node: u64) -> u64 {
-        while let Some(&parent) = self.parents.get(&node) {
-            node = parent;
+        while self.parents[node as usize] != NONE {
+            node = u64::from(self.parents[node as usize]);
         }
         node
     }
 
-    /// What the group of a root covers.
-    fn covered(&self, root: u64) -> f64 {
-        self.groups.get(&root).map_or_else(|| self.node_covers(root), |group| group.covered)
+    /// The group of a root, if it is of several nodes or stuck.
+    fn group(&self, root: u64) -> Option<&Group> {
+        self.groups.get(self.group_of[root as usize] as usize)
+    }
+
+    /// The surface behind the group of a root, m².
+    fn area(&self, root: u64) -> f64 {
+        self.group(root).map_or_else(|| self.nodes.area(root), |group| group.area)
     }
 
     /// The group of a root, out of the list.
     fn take_group(&mut self, root: u64) -> Group {
-        let known = self.groups.remove(&root);
-        known.unwrap_or_else(|| Group { covered: self.node_covers(root), nodes: vec![root] })
-    }
-
-    fn node_covers(&self, node: u64) -> f64 {
-        let covers = |part: &WeldPart| {
-            let cell = self.tiles.cell_size(self.tile(part.index)).element_product();
-            part.weight * f64::from(self.surfaces[part.index as usize].covered) * cell
-        };
-        self.sources(node).iter().map(covers).sum()
-    }
-
-    /// The texels that a node takes flux and area from.
-    fn sources(&self, node: u64) -> Vec<WeldPart> {
-        match node.checked_sub(self.surfaces.len() as u64) {
-            Some(weld) => self.welds.welds[weld as usize].sources.clone(),
-            None => vec![WeldPart { index: node, weight: 1.0 }],
+        match self.groups.get_mut(self.group_of[root as usize] as usize) {
+            Some(group) => std::mem::take(group),
+            None => Group {
+                area: self.nodes.area(root),
+                nodes: vec![root],
+                beside: self.nodes.beside(root),
+                ..Group::default()
+            },
         }
     }
 
-    /// The tile of a texel.
-    fn tile(&self, texel: u64) -> &MapTile {
-        &self.tiles.tiles[self.tiles.tiles.partition_point(|tile| tile.first_texel <= texel) - 1]
-    }
-
-    /// The nodes of the same chart that stand around a node on the tiles that it is on, in any order, and itself.
-    fn beside(&self, node: u64) -> Vec<u64> {
-        let mut beside = Vec::new();
-        for WeldPart { index: texel, .. } in self.sources(node) {
-            let tile = self.tile(texel);
-            let [x, y] = place(tile, texel);
-            let near = |at: u64, axis: usize| at.saturating_sub(1)..=(at + 1).min(tile.cells[axis].into());
-            for (y, x) in near(y, 1).flat_map(|y| near(x, 0).map(move |x| (y, x))) {
-                let other = tile.first_texel + y * (u64::from(tile.cells[0]) + 1) + x;
-                if self.surfaces[other as usize].chart == self.surfaces[texel as usize].chart {
-                    beside.extend(self.nodes(other));
-                }
-            }
-        }
-        beside
-    }
-
-    /// The nodes that a texel takes its irradiance from: itself, or welds.
-    fn nodes(&self, texel: u64) -> Vec<u64> {
-        match self.welds.linked.binary_search_by_key(&texel, |(texel, _)| *texel) {
-            Err(_) => vec![texel],
-            Ok(link) => {
-                let welds = self.welds.linked[link].1.iter();
-                welds.map(|weld| self.surfaces.len() as u64 + weld.index).collect()
-            }
+    /// Puts the group of a root into the list.
+    fn put_group(&mut self, root: u64, group: Group) {
+        let number = &mut self.group_of[root as usize];
+        if *number == NONE {
+            *number = self.groups.len() as u32;
+            self.groups.push(group);
+        } else {
+            self.groups[*number as usize] = group;
         }
     }
 
     /// The map's welds, with one for each group in place of those in it.
     fn joined(&self) -> Welds {
-        let texels = self.surfaces.len() as u64;
-        let roots: Vec<u64> = self.parents.keys().map(|&node| self.root(node)).collect();
-        let mut nodes: Vec<u64> = self.parents.keys().copied().chain(roots).filter(|&node| node < texels).collect();
+        let texels = self.nodes.texels();
+        let several = self.groups.iter().filter(|group| group.nodes.len() > 1);
+        let mut nodes: Vec<u64> =
+            several.flat_map(|group| &group.nodes).copied().filter(|&node| node < texels).collect();
         nodes.sort_unstable();
-        nodes.dedup();
         let alone = nodes.len();
-        nodes.extend((texels..).take(self.welds.welds.len()));
+        nodes.extend((texels..).take(self.nodes.welds.welds.len()));
 
         let mut joined = Welds::default();
-        let mut weld_of: BTreeMap<u64, u64> = BTreeMap::new();
+        let mut weld_of: HashMap<u64, u64> = HashMap::new();
         for &node in &nodes {
             let root = self.root(node);
             let weld = *weld_of.entry(root).or_insert_with(|| {
-                let owner = root.checked_sub(texels).map_or(root, |weld| self.welds.welds[weld as usize].owner);
+                let owner = root.checked_sub(texels).map_or(root, |weld| self.nodes.welds.welds[weld as usize].owner);
                 joined.welds.push(Weld { owner, sources: Vec::new(), area: 0.0 });
                 joined.welds.len() as u64 - 1
             });
-            for part in self.sources(node) {
-                joined.welds[weld as usize].area += part.weight * self.surfaces[part.index as usize].area;
+            for part in self.nodes.sources(node) {
+                joined.welds[weld as usize].area += part.weight * self.nodes.map.surfaces[part.index as usize].area;
                 add_part(&mut joined.welds[weld as usize].sources, part);
             }
         }
@@ -198,7 +266,7 @@ impl Scraps<'_> {
         let of_texels =
             nodes[..alone].iter().map(|&texel| (texel, vec![WeldPart { index: new_weld(texel), weight: 1.0 }]));
         joined.linked = of_texels.collect();
-        for (texel, links) in &self.welds.linked {
+        for (texel, links) in &self.nodes.welds.linked {
             let mut parts = Vec::with_capacity(links.len());
             links
                 .iter()
@@ -216,16 +284,4 @@ fn add_part(parts: &mut Vec<WeldPart>, part: WeldPart) {
         Some(known) => known.weight += part.weight,
         None => parts.push(part),
     }
-}
-
-/// Where on its tile a texel stands.
-fn place(tile: &MapTile, texel: u64) -> [u64; 2] {
-    let (within, columns) = (texel - tile.first_texel, u64::from(tile.cells[0]) + 1);
-    [within % columns, within / columns]
-}
-
-/// The most that a texel can cover, in cells of its tile.
-fn most_covered(tile: &MapTile, at: [u64; 2]) -> f64 {
-    let along = |axis: usize| if at[axis] == 0 || at[axis] == u64::from(tile.cells[axis]) { 0.5 } else { 1.0 };
-    along(0) * along(1)
 }
