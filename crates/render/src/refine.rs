@@ -380,7 +380,13 @@ mod tests {
     }
 
     fn errors(tiles: &[(f32, u32)]) -> TileErrors {
-        let tile = |&(squared_error, samples)| TileError { squared_error, radiance: 1.0, samples, pixels: 64, rays: 64 * samples };
+        let tile = |&(squared_error, samples)| TileError {
+            squared_error,
+            radiance: 1.0,
+            samples,
+            pixels: 64,
+            rays: 64 * samples,
+        };
         TileErrors { columns: tiles.len(), tiles: tiles.iter().map(tile).collect() }
     }
 
