@@ -30,20 +30,23 @@ struct Neighbour {
     area: f32,
 }
 
-/// What a texel of some area holds. Without guides it is its own.
+/// What a texel of some area holds. Without guides it is its own: that of all light.
 fn held(texel: u32, entry: u32, area: f32) -> Neighbour {
     let first = (1u + light_group_count) * texel;
-    if mixes_hues {
-        let all_light = textureLoad(rough_irradiance, record_texel(first), 0);
-        return Neighbour(all_light, textureLoad(rough_irradiance, record_texel(first + entry), 0), area);
+    let own = textureLoad(rough_irradiance, record_texel(first + entry), 0);
+    let has_guides = !mixes_hues && smooth_params.makes_guide == 0u && smooth_params.first_guide > 0u;
+    if !has_guides && light_group_count == 0u {
+        return Neighbour(own, own, area);
     }
-    let guides = select(smooth_params.first_guide, 0u, smooth_params.makes_guide != 0u);
+    let guides = select(0u, smooth_params.first_guide, has_guides);
     let guide = textureLoad(rough_irradiance, record_texel(guides + first), 0);
-    let irradiance = textureLoad(rough_irradiance, record_texel(first + entry), 0).xyz;
     if light_group_count == 0u {
-        return Neighbour(guide, vec4<f32>(irradiance, guide.w), area);
+        return Neighbour(guide, vec4<f32>(own.xyz, guide.w), area);
     }
-    return Neighbour(guide, vec4<f32>(irradiance, textureLoad(rough_irradiance, record_texel(guides + first + entry), 0).w), area);
+    if !has_guides {
+        return Neighbour(guide, own, area);
+    }
+    return Neighbour(guide, vec4<f32>(own.xyz, textureLoad(rough_irradiance, record_texel(guides + first + entry), 0).w), area);
 }
 
 /// What a neighbour holds.
@@ -142,13 +145,10 @@ fn meet(exchange: ptr<function, Exchange>, k: u32, texel: Neighbour, other: Neig
     }
 }
 
-/// A texel's guide: what is on and around it.
+/// A texel's guide: what is on and around it. Few photons say little of a texel's variance, so that is the mean around it too.
 fn guide_of(texel: Neighbour, exchange: Exchange) -> vec4<f32> {
     let own = OWN_KERNEL * texel.area;
     let mean = (own * texel.own.xyz + exchange.flux) / (own + exchange.area);
-    if smooth_params.averages_variance == 0u {
-        return vec4<f32>(mean, texel.own.w);
-    }
     return vec4<f32>(mean, (own * texel.own.w + exchange.around) / (OWN_KERNEL + exchange.kernel) / texel.area);
 }
 

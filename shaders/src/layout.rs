@@ -567,12 +567,12 @@ shared_structs! {
         distance: i32,
         /// Factor on the variance that the smoothed texels have if their errors do not depend on each other.
         variance_factor: f32,
-        /// 1 for a dispatch that makes the guide of a step: what texels are compared by.
+        /// 1 for a dispatch that makes guides: what texels are compared by.
         makes_guide: u32,
-        /// 1 if the guide's variance is the mean around a texel: few photons say little of it.
-        averages_variance: u32,
-        /// Entries of the texture before those of the guides.
+        /// Entries of the texture before those of the guides; 0 if texels are compared by themselves.
         first_guide: u32,
+        /// Unused.
+        padding: u32,
     }
     /// A ray asked about.
     struct QueryRay {

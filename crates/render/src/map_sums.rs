@@ -13,8 +13,8 @@ use crate::{
 
 /// Texels in whose multiples the maps of light groups begin: where a device can bind a part of a buffer.
 const GROUP_ALIGNMENT: u64 = 64;
-/// Steps of the filter: a texel is compared with those that are 1, 2, 4, … cells away.
-const FILTER_STEPS: u32 = 5;
+/// Steps of the filter after the first, two and two: a texel is compared with those that are so many cells away.
+const WIDER_STEPS: [[i32; 2]; 2] = [[2, 4], [8, 16]];
 /// What photons that fall on four texels each make of the variance of a mean over many texels, against that of independent texels: the squares
 /// of bilinear weights sum to (2/3)² on average, their sum to 1.
 const BILINEAR_VARIANCE: f32 = 2.25;
@@ -199,7 +199,7 @@ impl ResolvePass {
             if maps.format.mixes_hues {
                 hue_steps(of.photons).iter().for_each(|distances| filter.mix_hues(gpu, maps, of.scene, *distances));
             } else {
-                (0..FILTER_STEPS).for_each(|step| filter.step(gpu, maps, of, step));
+                filter.smooth(gpu, maps, of);
             }
         }
     }
@@ -224,13 +224,18 @@ impl Filter {
         Self { pipeline, params, read }
     }
 
-    /// Filters irradiance once: from the first target to the second, with guides, and back, smoothed where these are alike.
-    fn step(&self, gpu: &Gpu, maps: &EnergyMaps, of: Resolving, step: u32) {
-        let template = SmoothParams { first_guide: maps.entries() as u32, distance: 1, ..Default::default() };
-        let variance_factor = if step == 0 && !of.footprints { BILINEAR_VARIANCE } else { 1.0 };
-        let guide = SmoothParams { makes_guide: 1, averages_variance: u32::from(step == 0), ..template };
-        let smooth = SmoothParams { distance: 1 << step, variance_factor, ..template };
-        self.forth_and_back(gpu, maps, of.scene, [guide, smooth]);
+    /// Filters irradiance: from the first target to the second, with guides, and back, smoothed where these are alike; then wider and wider, where
+    /// the smoothed texels themselves are.
+    fn smooth(&self, gpu: &Gpu, maps: &EnergyMaps, of: Resolving) {
+        let first_guide = maps.entries() as u32;
+        let variance_factor = if of.footprints { 1.0 } else { BILINEAR_VARIANCE };
+        let guide = SmoothParams { makes_guide: 1, distance: 1, first_guide, ..Default::default() };
+        let guided = SmoothParams { distance: 1, first_guide, variance_factor, ..Default::default() };
+        self.forth_and_back(gpu, maps, of.scene, [guide, guided]);
+        for distances in WIDER_STEPS {
+            let steps = distances.map(|distance| SmoothParams { distance, variance_factor: 1.0, ..Default::default() });
+            self.forth_and_back(gpu, maps, of.scene, steps);
+        }
     }
 
     /// Mixes hues over texels so far apart, twice.
