@@ -127,26 +127,27 @@ fn start_photon(place: u32) -> Photon {
         }
     }
     let numbers = sobol_5(index, photon_params.seed);
-    var guided = GuidedNumbers(numbers.first, 1.0, vec2<u32>(0u));
+    var guided = GuidedNumbers(numbers.first, 1.0, 1.0, vec2<u32>(0u));
     if has_guide {
         guided = guide_numbers(numbers.first);
-    }
-    if is_pilot() {
-        landings[index] = Landing(NONE, 0.0, 0.0, 0.0, guided.cells.x, guided.cells.y);
     }
     var emission: Emission;
     if paper_refraction != PAPER_NONE {
         emission = emit_by_equation_1(index);
     } else {
-        emission = emit(guided.numbers);
+        emission = emit(guided);
+    }
+    let density = emission.density * guided.place_density;
+    if is_pilot() {
+        landings[index] = Landing(NONE, 0.0, 0.0, 0.0, density, guided.cells.x, guided.cells.y);
     }
     let wavelength = first_wavelength();
-    let beta = at_wavelength(emission.flux * (photon_params.flux_factor / guided.density), wavelength);
+    let beta = at_wavelength(emission.flux * (photon_params.flux_factor / density), wavelength);
     let units = to_units(beta);
     accounts[LEDGER_EMITTED] += units;
     return Photon(
         index, emission.origin, emission.direction, beta, units, photon_params.media, 0u, 0u, numbers.fifth, wavelength,
-        emitted_differential(emission, index, guided.density), has_footprints,
+        emitted_differential(emission, index, density), has_footprints,
     );
 }
 
@@ -268,7 +269,11 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
 
     (*photon).choices += select(0u, 1u, is_caster && kind != MATERIAL_MIRROR);
     var gloss_chance = 1.0;
-    if is_receiver {
+    let incident = (*photon).beta;
+    if is_receiver && is_caster && (*photon).depth == 0u {
+        // What the base takes of light that met no caster is the camera pass's: no photon is spent on it.
+        change_flux(photon, gloss_reflectance(material, -dot(d, point.n_s), sides), LEDGER_DIRECT);
+    } else if is_receiver {
         let gloss = gloss_reflectance(material, -dot(d, point.n_s), sides);
         // The gloss of a receiver that is no caster is the camera pass's; what it takes is lost to the photon.
         gloss_chance = select(0.0, (gloss.x + gloss.y + gloss.z) / 3.0, is_caster);
@@ -284,7 +289,7 @@ fn meet_surface(photon: ptr<function, Photon>, hit: Hit) -> bool {
     }
     let v = padded_2((*photon).index, photon_params.seed, SLOT_MICROFACET + 2u * choice);
     let event = scatter_specular(material, d, point.n_g, point.n_s, sides, u, v);
-    change_flux(photon, event.weight / gloss_chance, LEDGER_ABSORBED);
+    set_flux(photon, incident * at_wavelength(event.weight / gloss_chance, (*photon).wavelength), LEDGER_ABSORBED);
     if paper_refraction == PAPER_NONE {
         change_flux(photon, vec3<f32>(adjoint_factor(d, point.n_g, event)), LEDGER_SHADING_NORMALS);
     }

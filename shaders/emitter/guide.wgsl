@@ -52,11 +52,28 @@ fn move_point(first: u32, columns: u32, rows: u32, u: vec2<f32>) -> MovedPoint {
     return MovedPoint(x.interval * rows + y.interval, vec2<f32>(x.number, y.number), x.density * y.density);
 }
 
+/// Share of [0, 1), times `count`, that moves into the interval of the `count` entries from `first` on.
+fn interval_density(first: u32, count: u32, interval: u32) -> f32 {
+    let bounds = bitcast<vec2<f32>>(load_entry(first + interval).xy);
+    return (bounds.y - bounds.x) * f32(count);
+}
+
+/// The density of the first two emission numbers where `u` stands after the move; 1 on average.
+fn aim_density(u: vec2<f32>) -> f32 {
+    let columns = photon_params.guide_columns;
+    let rows = photon_params.guide_rows;
+    let column = min(u32(u.x * f32(columns)), columns - 1u);
+    let row = min(u32(u.y * f32(rows)), rows - 1u);
+    return interval_density(0u, columns, column) * interval_density(columns + column * rows, rows, row);
+}
+
 /// Emission numbers that have moved.
 struct GuidedNumbers {
     numbers: vec4<f32>,
-    /// Their density; 1 on average.
-    density: f32,
+    /// Density of the first two; 1 on average.
+    aim_density: f32,
+    /// Density of the next two; 1 on average.
+    place_density: f32,
     /// Cells of the first and of the second table.
     cells: vec2<u32>,
 }
@@ -67,5 +84,5 @@ fn guide_numbers(u: vec4<f32>) -> GuidedNumbers {
     let side = photon_params.guide_side;
     let aim = move_point(0u, columns, rows, u.xy);
     let place = move_point(columns * (rows + 1u), side, side, u.zw);
-    return GuidedNumbers(vec4<f32>(aim.point, place.point), aim.density * place.density, vec2<u32>(aim.cell, place.cell));
+    return GuidedNumbers(vec4<f32>(aim.point, place.point), aim.density, place.density, vec2<u32>(aim.cell, place.cell));
 }

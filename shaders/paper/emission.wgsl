@@ -24,5 +24,5 @@ fn emit_by_equation_1(index: u32) -> Emission {
     let phi = PI * (u.y - 0.5);
     let basis = frame(light.axis);
     let direction = cos(phi) * (cos(theta) * basis.tangent + sin(theta) * basis.bitangent) + sin(phi) * light.axis;
-    return Emission(light.position, normalize(direction), photon_params.ray_energy, 2.0 * PI * PI * cos(phi));
+    return Emission(light.position, normalize(direction), photon_params.ray_energy, 1.0, 2.0 * PI * PI * cos(phi));
 }

@@ -32,6 +32,15 @@ fn disc(u: vec2<f32>) -> vec2<f32> {
     return r * vec2<f32>(cos(phi), sin(phi));
 }
 
+/// The point of the unit square that `disc` takes to a point of the unit disc.
+fn disc_inverse(p: vec2<f32>) -> vec2<f32> {
+    let wide = abs(p.x) > abs(p.y);
+    let main = select(p.y, p.x, wide);
+    let r = select(-length(p), length(p), main >= 0.0);
+    let across = r * (4.0 / PI) * atan(select(p.x, p.y, wide) / select(main, 1.0, main == 0.0));
+    return 0.5 + 0.5 * select(vec2<f32>(across, r), vec2<f32>(r, across), wide);
+}
+
 /// 1 − cos α of a cone of sine `sin_alpha`, without cancellation.
 fn cone_height(sin_alpha: f32) -> f32 {
     let sin2 = sin_alpha * sin_alpha;
@@ -57,6 +66,15 @@ fn cone(axis: vec3<f32>, height: f32, u: vec2<f32>) -> ConeSample {
     let basis = frame(axis);
     let direction = sin_theta * (cos(phi) * basis.tangent + sin(phi) * basis.bitangent) + cos_theta * axis;
     return ConeSample(direction, cos_theta, sin_theta);
+}
+
+/// The point of the unit square that `cone` takes to a direction within it.
+fn cone_inverse(axis: vec3<f32>, height: f32, direction: vec3<f32>) -> vec2<f32> {
+    let basis = frame(axis);
+    // |d − axis|²/2 is 1 − cos of the angle between them, without cancellation.
+    let chord = direction - axis;
+    let turn = atan2(dot(direction, basis.bitangent), dot(direction, basis.tangent)) / (2.0 * PI);
+    return vec2<f32>(0.5 * dot(chord, chord) / height, turn + select(0.0, 1.0, turn < 0.0));
 }
 
 /// A direction around unit vector `n`, in proportion to its cosine.

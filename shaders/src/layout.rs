@@ -244,7 +244,7 @@ shared_structs! {
     struct AimTarget {
         /// Centre, metres, world frame.
         center: [f32; 3],
-        /// Radius, metres.
+        /// Radius, metres; of a sphere's target 0 if it is every direction.
         radius: f32,
         /// Unit normal of a disc, pointing away from the light.
         axis: [f32; 3],
@@ -265,7 +265,7 @@ shared_structs! {
         seed: u32,
         /// The most surfaces that a photon meets before it is cut off.
         max_depth: u32,
-        /// Targets in use; 0 for a sphere that emits in every direction.
+        /// Targets in use.
         target_count: u32,
         /// 1 if `order` applies.
         ordered: u32,
@@ -311,6 +311,8 @@ shared_structs! {
         y: f32,
         /// Flux that it brought there, W, mean of the channels.
         flux: f32,
+        /// Density of its emission under the guide, over that without one.
+        density: f32,
         /// The cell of the guide of its first two emission numbers.
         aim_cell: u32,
         /// The cell of the guide of the next two.

@@ -63,7 +63,6 @@ fn both(scene: &Scene) -> Both {
                 .collect();
             ReferenceEmission::Aimed(&discs)
         }
-        Emission::Unaimed => ReferenceEmission::Unaimed,
         Emission::Paper { .. } => panic!("the reference follows the physical model"),
         Emission::Toward(list) => {
             spheres = list
@@ -251,6 +250,23 @@ fn coats_and_gloss() {
         "{ type = \"metallic_roughness\", base_color = [0.9, 0.5, 0.3], metallic = 0.4, roughness = 0.2 }",
     ] {
         assert_alike(&of(glass, floor, ""), 5e-3);
+    }
+}
+
+/// A second ball before the first as each light sees it, and a varnished table, in whose bounds a near lamp stands: most rays could
+/// have been sent by several targets.
+#[test]
+fn guides_of_targets_that_overlap() {
+    let more = "{ sphere = { center = [0.15, 0.75, 0.1], radius = 0.15 }, material = \"glass\" }";
+    let mut scene = of("{ type = \"dielectric\", ior = 1.5 }", "{ type = \"coated\", albedo = 0.5 }", more);
+    for light in [
+        LAMP,
+        "{ type = \"sphere\", center = [0.6, 0.9, 0.3], radius = 0.05, flux = 35 }",
+        "{ type = \"point\", position = [0.6, 1.9, 0.3], flux = 35 }",
+        "{ type = \"sun\", direction = [-0.2, -1, -0.1], angular_radius = 2, irradiance = 3 }",
+    ] {
+        scene.lights = over_a_floor(BALL, light).lights;
+        assert_alike(&scene, 5e-3);
     }
 }
 

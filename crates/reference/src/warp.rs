@@ -14,6 +14,21 @@ pub fn disc(u: f64, v: f64) -> DVec2 {
     r * DVec2::from_angle(phi)
 }
 
+/// The point of the unit square that [`disc`] takes to a point of the unit disc.
+pub fn disc_inverse(p: DVec2) -> [f64; 2] {
+    let along = |main: f64, across: f64| {
+        let r = p.length().copysign(main);
+        (r, if main == 0.0 { 0.0 } else { r * (across / main).atan() / FRAC_PI_4 })
+    };
+    let (a, b) = if p.x.abs() > p.y.abs() {
+        along(p.x, p.y)
+    } else {
+        let (b, a) = along(p.y, p.x);
+        (a, b)
+    };
+    [0.5 * (a + 1.0), 0.5 * (b + 1.0)]
+}
+
 /// Two unit vectors that make a right-handed frame with the unit vector n (Duff et al. 2017).
 pub fn frame(n: DVec3) -> [DVec3; 2] {
     let s = if n.z >= 0.0 { 1.0 } else { -1.0 };
@@ -36,6 +51,13 @@ pub fn cone(axis: DVec3, height: f64, u: f64, v: f64) -> DVec3 {
     let (sin_phi, cos_phi) = (TAU * v).sin_cos();
     let [t1, t2] = frame(axis);
     (z * (2.0 - z)).sqrt() * (cos_phi * t1 + sin_phi * t2) + (1.0 - z) * axis
+}
+
+/// The point of the unit square that [`cone`] takes to a direction within it.
+pub fn cone_inverse(axis: DVec3, height: f64, direction: DVec3) -> [f64; 2] {
+    let [t1, t2] = frame(axis);
+    let turn = direction.dot(t2).atan2(direction.dot(t1)) / TAU;
+    [0.5 * (direction - axis).length_squared() / height, turn.rem_euclid(1.0)]
 }
 
 /// 1 − cos α of the cone of half angle α under which a sphere is seen, from R/D = sin α; no cancellation for small α.
@@ -71,6 +93,20 @@ mod tests {
         assert!((f64::from(inside) / f64::from(steps * steps) - 0.25).abs() < 1e-3);
         assert_eq!(disc(0.5, 0.5), DVec2::ZERO);
         assert!(disc(1.0, 0.5).distance(DVec2::X) < 1e-15 && disc(0.5, 1.0).distance(DVec2::Y) < 1e-15);
+    }
+
+    #[test]
+    fn inverses_lead_back() {
+        let axis = DVec3::new(1.0, 2.0, -2.0) / 3.0;
+        for i in 0..40 {
+            for j in 0..40 {
+                let [u, v] = [i, j].map(|k| (f64::from(k) + 0.4) / 40.0);
+                for back in [disc_inverse(disc(u, v)), cone_inverse(axis, 0.7, cone(axis, 0.7, u, v))] {
+                    assert!((back[0] - u).abs() < 1e-12 && (back[1] - v).abs() < 1e-12, "{u}, {v}: {back:?}");
+                }
+            }
+        }
+        assert_eq!(disc_inverse(DVec2::ZERO), [0.5, 0.5]);
     }
 
     #[test]

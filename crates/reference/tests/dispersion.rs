@@ -325,7 +325,7 @@ fn scenes_without_dispersion_have_no_wavelengths() {
     let scene = under_a_ball(fine_ball(), glass(1.4), lamp());
     let world = World::new(&scene);
     assert!(!world.has_dispersion() && world.spectrum() == Spectrum::Whole);
-    let emission = Emission::Unaimed;
+    let emission = Emission::Aimed(&[AimDisc::EVERYWHERE]);
     let job =
         PhotonJob { world: &world, maps: &[None, None], light: 0, emission, guide: None, seed: 1, photons: 0..10_000 };
     assert!((0..10_000).all(|photon| trace_one(&job, photon).spectrum == Spectrum::Whole));

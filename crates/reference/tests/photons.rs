@@ -128,7 +128,7 @@ fn ledger_closes_with_everything_in_it() {
     let mut scene = scene(parts, lights);
     scene.settings.max_depth = 3;
     let world = World::new(&scene);
-    let ledger = trace_without_maps(&world, Emission::Unaimed, 50_000);
+    let ledger = trace_without_maps(&world, Emission::Aimed(&[AimDisc::EVERYWHERE]), 50_000);
     assert_closes(&ledger);
     assert!((ledger.emitted / 50_000.0).abs_diff_eq(DVec3::splat(5.0), 1e-12));
     let Ledger { deposited, direct, absorbed, escaped, cut_off, shading_normals, .. } = ledger;
@@ -178,7 +178,8 @@ fn aimed_and_unaimed_photons_bring_the_same_light() {
     // The discs overlap as the light sees them.
     let discs = [ball_disc(&world, DVec3::new(0.0, 0.5, 0.0)), ball_disc(&world, DVec3::new(0.5, 0.6, 0.3))];
     let aimed = trace_without_maps(&world, Emission::Aimed(&discs), 1 << 16).deposited.x / f64::from(1 << 16);
-    let unaimed = trace_without_maps(&world, Emission::Unaimed, 1 << 20).deposited.x / f64::from(1 << 20);
+    let unaimed =
+        trace_without_maps(&world, Emission::Aimed(&[AimDisc::EVERYWHERE]), 1 << 20).deposited.x / f64::from(1 << 20);
     assert!((aimed / unaimed - 1.0).abs() < 0.01, "{aimed} W aimed, {unaimed} W unaimed");
 }
 

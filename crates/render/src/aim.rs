@@ -11,10 +11,9 @@ use crate::lights::Emitter;
 /// How a light emits its photons; docs/photon-paths.md, "Emission". At most [`MAX_AIM_TARGETS`] targets.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Emission {
-    /// A sphere, toward discs that every ray from it to a caster crosses.
+    /// A sphere, toward discs that every ray from it to a caster crosses, and where casters are too near for discs to pay, in every
+    /// direction: a target of radius 0.
     Aimed(Vec<AimTarget>),
-    /// A sphere, in every direction: a caster is too near for discs to pay.
-    Unaimed,
     /// The light of the profile `paper`, from its position in every direction, by equation 1.
     Paper {
         /// Energy of each ray.
@@ -43,29 +42,44 @@ impl Emission {
             return Some(Self::Toward(spheres.iter().map(target).collect()));
         };
         let near = |s: &BoundingSphere| s.center.distance(light.center) < NEAREST_AIM * (s.radius + light.radius);
-        if spheres.iter().any(near) {
-            return Some(Self::Unaimed);
+        let mut targets: Vec<AimTarget> =
+            spheres.iter().filter(|sphere| !near(sphere)).map(|sphere| aim_disc(&light, sphere)).collect();
+        if targets.len() < spheres.len() {
+            targets.push(AimTarget { center: light.center.into(), axis: Vec3::Z.into(), ..AimTarget::default() });
         }
-        Some(Self::Aimed(spheres.iter().map(|sphere| aim_disc(&light, sphere)).collect()))
+        Some(Self::Aimed(targets))
     }
 
     /// What the light aims at.
     pub fn targets(&self) -> &[AimTarget] {
         match self {
             Self::Aimed(targets) | Self::Toward(targets) => targets,
-            Self::Unaimed | Self::Paper { .. } => &[],
+            Self::Paper { .. } => &[],
         }
     }
 
     /// The most flux that one photon carries, W, for a share 1 of all photons.
     pub(crate) fn largest_photon(&self, emitter: &Emitter) -> f32 {
+        self.photon_toward(emitter, self.targets())
+    }
+
+    /// The least of the targets' largest photons over the greatest.
+    pub(crate) fn photon_range(&self, emitter: &Emitter) -> f32 {
+        let each = self.targets().iter().map(|target| self.photon_toward(emitter, std::slice::from_ref(target)));
+        each.fold(f32::INFINITY, f32::min).min(f32::MAX) / self.largest_photon(emitter).max(f32::MIN_POSITIVE)
+    }
+
+    /// The most flux of a photon toward some of the targets.
+    fn photon_toward(&self, emitter: &Emitter, some: &[AimTarget]) -> f32 {
         let count = self.targets().len() as f32;
-        let widest = |one: &dyn Fn(&AimTarget) -> f32| self.targets().iter().map(one).fold(0.0, f32::max);
+        let widest = |one: &dyn Fn(&AimTarget) -> f32| some.iter().map(one).fold(0.0, f32::max);
         match (self, emitter.bounds) {
-            (Self::Unaimed, _) => emitter.flux.max_element(),
             (Self::Paper { energy }, _) => energy.max_element(),
             (Self::Aimed(_), Some(light)) => {
                 let one = |disc: &AimTarget| {
+                    if disc.radius <= 0.0 {
+                        return 4.0 * (PI * light.radius).powi(2);
+                    }
                     let distance = Vec3::from(disc.center).distance(light.center);
                     PI * disc.radius * disc.radius * TAU * cone_height(light.radius / distance)
                 };

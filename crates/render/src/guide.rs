@@ -1,15 +1,14 @@
 //! Guides: how emission numbers are moved to where photons matter; docs/photon-paths.md, "Guide".
 
-use std::f32::consts::PI;
-
-use diacaustic_shaders::{AimTarget, light_kind};
-use diacaustic_surface::BoundingSphere;
-use glam::Vec3;
+use diacaustic_shaders::light_kind;
 
 use crate::{aim::Emission, lights::Emitter};
 
 /// Parts into which a table's bounds divide [0, 1): as fine as emission numbers are.
 const QUANTA: f64 = 16_777_216.0;
+
+/// The least number of a pilot's photons for each cell of its guide.
+const PHOTONS_IN_CELL: u32 = 2;
 
 /// A light's guide: one table for its emission numbers u₀ and u₁, and one for u₂ and u₃.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,19 +34,12 @@ pub struct GuideTable {
 }
 
 impl Guide {
-    /// The guide that moves nothing, with the cells in which a pilot of this light counts.
-    pub(crate) fn even(emitter: &Emitter, emission: &Emission) -> Self {
-        // Each target has a part of the columns of its own. A ray that several targets could have sent has the density of all of them
-        // together, which guides of each alone would upset.
-        let targets = emission.targets().len().max(1);
-        // Where a sphere sends a photon that it does not aim depends on all four numbers at once, which two tables do not know.
-        let is_unaimed = matches!(emission, Emission::Unaimed | Emission::Paper { .. });
-        let (targets, side) = match targets {
-            _ if is_unaimed => (1, 1),
-            1 => (1, 64),
-            _ if !are_apart(emission.targets(), emitter.bounds) => (1, 1),
-            2..=4 => (targets, 32),
-            _ => (targets, 16),
+    /// The guide that moves nothing, with the cells in which a pilot of so many photons of this light counts.
+    pub(crate) fn even(emitter: &Emitter, emission: &Emission, pilot: u32) -> Self {
+        // Each target has a part of the columns of its own.
+        let (targets, side) = match emission.targets().len() {
+            0 => (1, 1),
+            targets => (targets, cells_along_target(targets, pilot)),
         };
         // Where a photon starts on a light that aims, or in a sun's disc, says little of where it goes.
         let place_side = match emitter.kind() {
@@ -68,19 +60,10 @@ impl Guide {
     }
 }
 
-/// Whether no ray from a light of these bounds crosses two of its targets.
-fn are_apart(targets: &[AimTarget], light: Option<BoundingSphere>) -> bool {
-    let Some(light) = light else { return false };
-    let cones: Vec<(Vec3, f32)> = targets
-        .iter()
-        .map(|target| {
-            let toward = Vec3::from(target.center) - light.center;
-            let sine = (target.radius + light.radius) / toward.length();
-            (toward.normalize_or_zero(), if sine < 1.0 { sine.asin() } else { PI })
-        })
-        .collect();
-    let apart = |a: &(Vec3, f32), b: &(Vec3, f32)| a.0.angle_between(b.0) > a.1 + b.1;
-    cones.iter().enumerate().all(|(index, a)| cones[index + 1..].iter().all(|b| apart(a, b)))
+/// Cells along a side of each target's square: as many, as a power of two, as leave at least [`PHOTONS_IN_CELL`] of the pilot's photons to a cell.
+fn cells_along_target(targets: usize, pilot: u32) -> usize {
+    let cells = (pilot / PHOTONS_IN_CELL) as usize / targets;
+    1 << (cells.max(1).ilog2() / 2)
 }
 
 impl GuideTable {
@@ -190,13 +173,10 @@ mod tests {
     }
 
     #[test]
-    fn targets_side_by_side_are_apart_and_one_before_the_other_is_not() {
-        let target = |x: f32, z: f32| AimTarget { center: [x, 0.0, z], radius: 0.2, ..AimTarget::default() };
-        let light = Some(BoundingSphere { center: Vec3::new(0.0, 0.0, 3.0), radius: 0.05 });
-        assert!(are_apart(&[target(-0.5, 0.0), target(0.5, 0.0)], light));
-        assert!(!are_apart(&[target(-0.2, 0.0), target(0.2, 0.0)], light));
-        assert!(!are_apart(&[target(0.0, 0.0), target(0.1, 1.0)], light));
-        assert!(!are_apart(&[target(-0.5, 0.0), target(0.5, 0.0)], None));
+    fn cells_are_as_fine_as_the_pilot_fills() {
+        let sides =
+            [(1, 1 << 15), (2, 1 << 15), (4, 1 << 15), (5, 1 << 15), (16, 1 << 15), (1, 1 << 11), (16, 1 << 11)];
+        assert_eq!(sides.map(|(targets, pilot)| cells_along_target(targets, pilot)), [128, 64, 64, 32, 32, 32, 8]);
     }
 
     #[test]

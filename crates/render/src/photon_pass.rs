@@ -43,8 +43,8 @@ const SEED_STREAM: u32 = 1;
 const PILOT_SEED_STREAM: u32 = 3;
 /// Rounds of a pilot: each flies by the guide that follows from those before it.
 const PILOT_ROUNDS: usize = 2;
-/// Photons in a round of a light's pilot, as powers of two: at most; at least, where many lights share the photons of four.
-const PILOT_ROUND: std::ops::RangeInclusive<u32> = 10..=13;
+/// Photons in a round of a light's pilot, as powers of two: at most; at least, where many lights share the photons of two.
+const PILOT_ROUND: std::ops::RangeInclusive<u32> = 10..=14;
 
 /// The pipeline of the photon pass.
 #[derive(Debug)]
@@ -147,6 +147,7 @@ impl Photons {
         let params = gpu.uniform::<PhotonParams>("photons");
         let mut lights = Vec::new();
         let mut turns = 0;
+        let pilot = (PILOT_ROUNDS as u32) << pilot_round(scene.lights.emitters.len());
         for emitter in &scene.lights.emitters {
             let emission = match &scene.settings.paper {
                 Some(profile) => paper::emission(profile, scene.casters),
@@ -154,7 +155,7 @@ impl Photons {
             };
             let Some(emission) = emission else { continue };
             let features = scene.features.for_photons_of(emitter.kind(), scene.settings);
-            let guide = Guide::even(emitter, &emission);
+            let guide = Guide::even(emitter, &emission, pilot);
             lights.push(PhotonLight {
                 emitter: emitter.clone(),
                 emission,
@@ -256,7 +257,8 @@ impl Photons {
             pilot.measure_flux(&flights);
             let error_weights = pilot.error_weights();
             for (light, rounds) in self.lights.iter_mut().zip(&flights) {
-                light.guide = pilot.learn(rounds, &error_weights);
+                let range = f64::from(light.emission.photon_range(&light.emitter));
+                light.guide = pilot.learn(rounds, &error_weights, range);
                 light.params_group = guide_group(gpu, &pass.params_layout, &self.params, &light.guide)?;
             }
         }
@@ -426,7 +428,7 @@ fn guide_group(
 /// Photons in a round of each light's pilot, as a power of two.
 fn pilot_round(lights: usize) -> u32 {
     let (least, most) = (*PILOT_ROUND.start(), *PILOT_ROUND.end());
-    (most + 2).saturating_sub(lights.next_power_of_two().ilog2()).clamp(least, most)
+    (most + 1).saturating_sub(lights.next_power_of_two().ilog2()).clamp(least, most)
 }
 
 /// The share of all lights' photons that would reach a receiver through a caster without a guide: those of the first round.

@@ -15,18 +15,25 @@ const REGIONS_ALONG_MAP: u32 = 64;
 const BOUNCED_SIGHTING: f64 = 0.1;
 /// Irradiance that is added to a region's own before errors are taken relative to it, as a share of the mean that the camera sees.
 const IRRADIANCE_FLOOR: f64 = 0.1;
-/// Hits of a further photon that each cell is supposed to have had: what the pilot missed in a cell that meets a caster may still be there.
+/// Photons that each cell is supposed to have had beside its own, with the hits of those around.
+const PRIOR_PHOTONS: f64 = 1.0;
+/// Hits of a further photon that each neighbourhood is supposed to have had: what the pilot missed in a cell that meets a caster may still be there.
 const PRIOR_CHANCE: f64 = 0.25;
 /// Hits of the usual error that each cell is supposed to have had beside its own.
 const PRIOR_HITS: f64 = 0.05;
 /// The share of photons that goes evenly to cells that lead to a caster and their neighbours.
-const DEFENSIVE_SHARE: f64 = 0.15;
+const DEFENSIVE_SHARE: f64 = 0.1;
 /// How fast hits dispel doubt: with h hits a cell at least 1/(1 + 6h) of the photons are spread evenly over these cells.
 const TRUST_IN_HITS: f64 = 6.0;
 /// The share of photons that goes evenly everywhere, with one table.
 const EVEN_SHARE: f64 = 1.0 / 64.0;
-/// The same of each table where there are two: both together keep the least density of one.
-const EVEN_SHARE_OF_TWO: f64 = 1.0 / 8.0;
+/// The same of each table where there are two.
+const EVEN_SHARE_OF_TWO: f64 = 1.0 / 16.0;
+/// The share of the largest photon's units that the guide leaves to what narrow targets get: where targets differ in width, the least density
+/// is greater, so that fixed-point sums do not round light away.
+const LEAST_UNITS: f64 = 1.0 / 4096.0;
+/// The most that this makes of the even share, of both tables together.
+const MOST_EVEN_SHARE: f64 = 0.25;
 
 /// A round of one light's pilot.
 #[derive(Clone, Debug)]
@@ -181,7 +188,8 @@ impl Pilot {
     }
 
     /// The guide that follows from the landings of one light's photons, which flew with the given guides.
-    pub fn learn(&self, rounds: &[PilotRound], error_weights: &[f64]) -> Guide {
+    /// `photon_range` is the least of its targets' largest photons over the greatest.
+    pub fn learn(&self, rounds: &[PilotRound], error_weights: &[f64], photon_range: f64) -> Guide {
         let even = &rounds[0].guide;
         let (mut aim, mut place) = (CellSums::new(&even.aim), CellSums::new(&even.place));
         for PilotRound { guide, landings } in rounds {
@@ -190,7 +198,7 @@ impl Pilot {
                 let (aim_density, place_density) = (guide.aim.density(aim_cell), guide.place.density(place_cell));
                 let region = self.region_of(landing.layer, [landing.x, landing.y]);
                 // What the photon would have carried without a guide.
-                let flux = f64::from(landing.flux) * aim_density * place_density;
+                let flux = f64::from(landing.flux) * f64::from(landing.density);
                 let error = region.map(|region| flux * flux * error_weights[region]);
                 let met_caster = landing.layer != NONE;
                 // Each table takes the mean over the other's square.
@@ -198,7 +206,9 @@ impl Pilot {
                 place.add(place_cell, met_caster, error.map(|error| error / aim_density));
             }
         }
-        let even_share = if even.place.cells() > 1 { EVEN_SHARE_OF_TWO } else { EVEN_SHARE };
+        let least = (LEAST_UNITS / photon_range).min(MOST_EVEN_SHARE);
+        let even_share =
+            if even.place.cells() > 1 { least.sqrt().max(EVEN_SHARE_OF_TWO) } else { least.max(EVEN_SHARE) };
         Guide { aim: aim.table(even_share), place: place.table(even_share) }
     }
 }
@@ -272,14 +282,16 @@ impl CellSums {
     /// The density that makes the error least, with shares that keep every cell alive.
     fn table(&self, even_share: f64) -> GuideTable {
         let cells = self.photons.len();
-        let [met, hits, error] =
-            [&self.met, &self.hits, &self.error].map(|sums| binomial(sums, self.columns, self.rows));
+        let [photons, met, hits, error] =
+            [&self.photons, &self.met, &self.hits, &self.error].map(|sums| binomial(sums, self.columns, self.rows));
         let all_hits: f64 = self.hits.iter().sum();
         let usual_error = if all_hits > 0.0 { (self.root_error / all_hits).powi(2) } else { 0.0 };
         let importance: Vec<f64> = (0..cells)
             .map(|cell| {
-                // The chance of a hit is the cell's own, for silhouettes are sharp; the error of a hit is its neighbourhood's.
-                let chance = (self.hits[cell] + PRIOR_CHANCE) / (self.photons[cell] + 1.0);
+                // The chance of a hit is the cell's own, for silhouettes are sharp, as far as its photons tell it; the error of a hit is its
+                // neighbourhood's.
+                let around = (hits[cell] + PRIOR_CHANCE) / (photons[cell] + 1.0);
+                let chance = (self.hits[cell] + PRIOR_PHOTONS * around) / (self.photons[cell] + PRIOR_PHOTONS);
                 let error = (error[cell] + PRIOR_HITS * usual_error) / (hits[cell] + PRIOR_HITS);
                 if met[cell] > 0.0 { (chance * error).sqrt() } else { 0.0 }
             })

@@ -3,14 +3,14 @@
 use std::f64::consts::{PI, TAU};
 
 use diacaustic_scene::LightKind;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::geometry::{Ray, Sphere};
 use crate::lights::{cap_height, intensity_of};
 use crate::media::Media;
 use crate::warp;
 
-use super::PhotonJob;
+use super::{GuideTable, PhotonJob};
 
 /// A caster nearer than this many sums of its radius and the light's cannot be aimed at.
 const NEAREST_AIM: f64 = 1.05;
@@ -22,11 +22,14 @@ pub struct AimDisc {
     pub center: DVec3,
     /// Unit normal, away from the light.
     pub axis: DVec3,
-    /// Radius, metres.
+    /// Radius, metres; 0 for every direction instead of a disc.
     pub radius: f64,
 }
 
 impl AimDisc {
+    /// No disc, but every ray from the light.
+    pub const EVERYWHERE: Self = Self { center: DVec3::ZERO, axis: DVec3::Z, radius: 0.0 };
+
     /// The disc about a caster's bounding sphere which covers the inner tangents of the two spheres; none if the caster
     /// comes too near the light.
     pub fn around(light: &Sphere, caster: &Sphere) -> Option<Self> {
@@ -54,8 +57,6 @@ impl AimDisc {
 pub enum Emission<'a> {
     /// From a spherical light over the rays through these discs, of which there is at least one.
     Aimed(&'a [AimDisc]),
-    /// From a spherical light over all of them.
-    Unaimed,
     /// From a point, a spot or a distant light toward these bounding spheres of casters, of which there is at least one.
     Toward(&'a [Sphere]),
 }
@@ -75,7 +76,6 @@ pub(super) struct Emitter<'a> {
 
 enum Source<'a> {
     Aimed(SphereLight, &'a [AimDisc]),
-    Unaimed(SphereLight),
     Point(PointLight<'a>, &'a [Sphere]),
     Distant(DistantLight, &'a [Sphere]),
 }
@@ -88,7 +88,6 @@ impl<'a> Emitter<'a> {
         };
         let source = match (&light.kind, job.emission) {
             (LightKind::Sphere { .. }, Emission::Aimed(discs)) => Source::Aimed(SphereLight::new(&light.kind), discs),
-            (LightKind::Sphere { .. }, Emission::Unaimed) => Source::Unaimed(SphereLight::new(&light.kind)),
             (LightKind::Point { position, .. } | LightKind::Spot { position, .. }, Emission::Toward(casters)) => {
                 let point = PointLight { position: position.as_dvec3(), kind: &light.kind };
                 Source::Point(point, casters)
@@ -106,15 +105,22 @@ impl<'a> Emitter<'a> {
         self.media
     }
 
-    /// The photon of four emission numbers.
-    pub(super) fn emit(&self, numbers: [f64; 4]) -> Start {
+    /// The photon of four emission numbers, the first two of which were moved by a table.
+    pub(super) fn emit(&self, numbers: [f64; 4], aim: Option<&GuideTable>) -> Start {
         match &self.source {
-            Source::Aimed(sphere, discs) => sphere.emit_aimed(discs, numbers),
-            Source::Unaimed(sphere) => sphere.emit_unaimed(numbers),
-            Source::Point(point, casters) => point.emit(casters, numbers),
-            Source::Distant(distant, casters) => distant.emit(casters, numbers),
+            Source::Aimed(sphere, discs) => sphere.emit_aimed(discs, numbers, aim),
+            Source::Point(point, casters) => point.emit(casters, numbers, aim),
+            Source::Distant(distant, casters) => distant.emit(casters, numbers, aim),
         }
     }
+}
+
+/// Sum over targets of the density of a ray by one of them, given those that could have sent it with their own two numbers.
+fn mixture(count: usize, aim: Option<&GuideTable>, targets: impl Iterator<Item = (usize, f64, [f64; 2])>) -> f64 {
+    let one = |(k, density, [u, v]): (usize, f64, [f64; 2])| {
+        density * aim.map_or(1.0, |table| table.density_at([(k as f64 + u) / count as f64, v]))
+    };
+    targets.map(one).sum::<f64>() / count as f64
 }
 
 /// One of `count` by a number in [0, 1), which is stretched to [0, 1) again.
@@ -136,38 +142,54 @@ impl SphereLight {
         Self { sphere, flux: flux.as_dvec3() }
     }
 
-    fn emit_aimed(&self, discs: &[AimDisc], numbers: [f64; 4]) -> Start {
-        let count = discs.len();
-        let (chosen, u) = choose(numbers[0], count);
-        let AimDisc { center, axis, radius } = discs[chosen];
-        let on_disc = warp::disc(u, numbers[1]);
-        let [t1, t2] = warp::frame(axis);
-        let target = center + radius * (on_disc.x * t1 + on_disc.y * t2);
-
-        let to_light = self.sphere.center - target;
-        let distance = to_light.length();
-        let height = self.cone_height(target);
-        let toward_light = warp::cone(to_light / distance, height, numbers[2], numbers[3]);
-        let origin = target + self.distance_to_surface(to_light, toward_light) * toward_light;
-
-        let direction = -toward_light;
-        let density: f64 = discs
-            .iter()
-            .enumerate()
-            .filter_map(|(k, disc)| {
-                let crossing = if k == chosen { Some(target) } else { disc.crossing(target, direction) };
-                crossing.map(|point| self.density(disc, point, direction) / count as f64)
-            })
-            .sum();
+    fn emit_aimed(&self, discs: &[AimDisc], numbers: [f64; 4], aim: Option<&GuideTable>) -> Start {
+        let (chosen, u) = choose(numbers[0], discs.len());
+        let own = [u, numbers[1]];
+        let (ray, target) = match &discs[chosen] {
+            disc if disc.radius > 0.0 => self.through(disc, own, [numbers[2], numbers[3]]),
+            _ => self.anywhere(own, [numbers[2], numbers[3]]),
+        };
+        let sent = discs.iter().enumerate().filter_map(|(k, disc)| {
+            let (density, other) = self.density(disc, target, ray.direction, k == chosen)?;
+            Some((k, density, if k == chosen { own } else { other }))
+        });
+        let density = mixture(discs.len(), aim, sent);
         let radiance = self.flux / (4.0 * PI * PI * self.sphere.radius * self.sphere.radius);
-        Start { ray: Ray { origin, direction }, flux: radiance / density }
+        Start { ray, flux: radiance / density }
     }
 
-    /// Probability density of a ray by one disc, in the measure of flux: cos θ dA dω on the disc, 1/(m² sr).
-    fn density(&self, disc: &AimDisc, point: DVec3, direction: DVec3) -> f64 {
+    /// The ray through a point of a disc from a point of the light, and the point of the disc.
+    fn through(&self, disc: &AimDisc, [u, v]: [f64; 2], [w, z]: [f64; 2]) -> (Ray, DVec3) {
+        let on_disc = warp::disc(u, v);
+        let [t1, t2] = warp::frame(disc.axis);
+        let target = disc.center + disc.radius * (on_disc.x * t1 + on_disc.y * t2);
+        let to_light = self.sphere.center - target;
+        let toward_light = warp::cone(to_light.normalize(), self.cone_height(target), w, z);
+        let origin = target + self.distance_to_surface(to_light, toward_light) * toward_light;
+        (Ray { origin, direction: -toward_light }, target)
+    }
+
+    /// The ray along a direction from a point of the disc that the light shows it, and where it starts.
+    fn anywhere(&self, [u, v]: [f64; 2], [w, z]: [f64; 2]) -> (Ray, DVec3) {
+        let direction = warp::cone(DVec3::Z, 2.0, u, v);
+        let origin = self.sphere.center + self.sphere.radius * warp::cosine_hemisphere(direction, w, z);
+        (Ray { origin, direction }, origin)
+    }
+
+    /// Probability density of the ray through a point by one disc, in the measure of flux: cos θ dA dω on the disc, 1/(m² sr); and
+    /// the numbers that would have led the disc to it. None if the ray misses it. `hits` says that it does not.
+    fn density(&self, disc: &AimDisc, on_ray: DVec3, direction: DVec3, hits: bool) -> Option<(f64, [f64; 2])> {
+        if disc.radius <= 0.0 {
+            let area = PI * self.sphere.radius * self.sphere.radius;
+            return Some((1.0 / (4.0 * PI * area), warp::cone_inverse(DVec3::Z, 2.0, direction)));
+        }
+        let point = if hits { on_ray } else { disc.crossing(on_ray, direction)? };
         let area = PI * disc.radius * disc.radius;
         let solid_angle = TAU * self.cone_height(point);
-        1.0 / (area * disc.axis.dot(direction) * solid_angle)
+        let [t1, t2] = warp::frame(disc.axis);
+        let from_center = (point - disc.center) / disc.radius;
+        let numbers = warp::disc_inverse(DVec2::new(from_center.dot(t1), from_center.dot(t2)));
+        Some((1.0 / (area * disc.axis.dot(direction) * solid_angle), numbers))
     }
 
     fn cone_height(&self, point: DVec3) -> f64 {
@@ -180,13 +202,6 @@ impl SphereLight {
         let off_axis = to_center - along * toward;
         along - (self.sphere.radius * self.sphere.radius - off_axis.length_squared()).max(0.0).sqrt()
     }
-
-    fn emit_unaimed(&self, numbers: [f64; 4]) -> Start {
-        let n = warp::cone(DVec3::Z, 2.0, numbers[2], numbers[3]);
-        let direction = warp::cosine_hemisphere(n, numbers[0], numbers[1]);
-        let origin = self.sphere.center + self.sphere.radius * n;
-        Start { ray: Ray { origin, direction }, flux: self.flux }
-    }
 }
 
 /// A point or a spot.
@@ -196,13 +211,17 @@ struct PointLight<'a> {
 }
 
 impl PointLight<'_> {
-    fn emit(&self, casters: &[Sphere], numbers: [f64; 4]) -> Start {
+    fn emit(&self, casters: &[Sphere], numbers: [f64; 4], aim: Option<&GuideTable>) -> Start {
         let (chosen, u) = choose(numbers[0], casters.len());
         let cones: Vec<_> = casters.iter().map(|caster| self.cone_toward(caster)).collect();
         let (axis, height) = cones[chosen];
         let direction = warp::cone(axis, height, u, numbers[1]).normalize();
         let hit = cones.iter().enumerate().filter(|(k, (axis, h))| *k == chosen || direction.dot(*axis) >= 1.0 - h);
-        let density: f64 = hit.map(|(_, (_, h))| 1.0 / (TAU * h * casters.len() as f64)).sum();
+        let sent = hit.map(|(k, &(axis, h))| {
+            let other = || warp::cone_inverse(axis, h, direction);
+            (k, 1.0 / (TAU * h), if k == chosen { [u, numbers[1]] } else { other() })
+        });
+        let density = mixture(casters.len(), aim, sent);
         let ray = Ray { origin: self.position, direction };
         Start { ray, flux: intensity_of(self.kind, direction) / density }
     }
@@ -241,7 +260,7 @@ impl DistantLight {
         }
     }
 
-    fn emit(&self, casters: &[Sphere], numbers: [f64; 4]) -> Start {
+    fn emit(&self, casters: &[Sphere], numbers: [f64; 4], aim: Option<&GuideTable>) -> Start {
         let direction = if self.height > 0.0 {
             warp::cone(self.direction, self.height, numbers[2], numbers[3]).normalize()
         } else {
@@ -251,11 +270,13 @@ impl DistantLight {
         let Sphere { center, radius } = casters[chosen];
         let ([t1, t2], p) = (warp::frame(direction), warp::disc(u, numbers[1]));
         let target = center + radius * (p.x * t1 + p.y * t2);
-        let crossed = casters.iter().enumerate().filter(|(k, caster)| {
-            *k == chosen || (caster.center - target).reject_from_normalized(direction).length() <= caster.radius
+        let sent = casters.iter().enumerate().filter_map(|(k, caster)| {
+            let from_center = (target - caster.center) / caster.radius;
+            let across = DVec2::new(from_center.dot(t1), from_center.dot(t2));
+            let numbers = if k == chosen { [u, numbers[1]] } else { warp::disc_inverse(across) };
+            (k == chosen || across.length() <= 1.0).then(|| (k, 1.0 / (PI * caster.radius * caster.radius), numbers))
         });
-        let density: f64 =
-            crossed.map(|(_, caster)| 1.0 / (PI * caster.radius * caster.radius * casters.len() as f64)).sum();
+        let density = mixture(casters.len(), aim, sent);
         let back = 2.0 * self.bounds.radius + target.distance(self.bounds.center);
         let ray = Ray { origin: target - back * direction, direction };
         // The disc's irradiance on a surface across each of its own directions: L Ω, with E = π L sin² α.

@@ -97,7 +97,7 @@ pub(super) fn fly(job: &PhotonJob, emitter: &Emitter, photon: u32) -> PhotonPath
     let numbers = if job.world.has_dispersion() { numbers.with_wavelength() } else { numbers };
     let drawn = [0, 1, 2, 3].map(|dimension| numbers.emission(dimension));
     let (moved, density) = job.guide.map_or((drawn, 1.0), |guide| guide.move_numbers(drawn));
-    let Start { ray, flux } = emitter.emit(moved);
+    let Start { ray, flux } = emitter.emit(moved, job.guide.map(|guide| &guide.aim));
     let wavelength_number = numbers.wavelength();
     let spectrum = job.world.spectrum();
     let flux = spectrum.color(flux / density);
@@ -173,6 +173,11 @@ impl Flight<'_> {
         beyond: Media,
         choice: Option<f64>,
     ) -> Option<End> {
+        // What the base takes of light that met no caster is the camera's: the rest goes on, not by chance.
+        let (choice, certain) = match surface.base() {
+            Some(_) if self.vertices.is_empty() => (Some(0.0), self.leave_base(facing, surface)),
+            _ => (choice, 1.0),
+        };
         let numbers = &mut self.numbers;
         let draw = || {
             let next = numbers.next_caster();
@@ -186,7 +191,7 @@ impl Flight<'_> {
                 Some(End::Shadowed)
             }
             Outcome::Passed(scattered) => {
-                self.attenuate(scattered.weight);
+                self.attenuate(scattered.weight * certain);
                 self.correct(scattered.adjoint);
                 let event = match scattered.transmitted {
                     false => Event::Reflected,
@@ -201,6 +206,17 @@ impl Flight<'_> {
                 None
             }
         }
+    }
+
+    /// Leaves to the camera what a base takes straight from a light. Returns the probability of the gloss, by which the weight
+    /// of what is now certain was divided.
+    fn leave_base(&mut self, facing: &Facing, surface: &Surface) -> f64 {
+        let cos = -self.ray.direction.dot(facing.normal_shading);
+        let taken = self.flux * surface.passed_to_base(cos);
+        self.ledger.direct += taken;
+        // All that does not go on will count as absorbed.
+        self.ledger.absorbed -= taken;
+        surface.chance_of_gloss(cos)
     }
 
     fn leave(&mut self, hit: &Hit, facing: &Facing, direction: DVec3) {

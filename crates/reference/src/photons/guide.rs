@@ -19,15 +19,26 @@ pub struct GuideTable {
 }
 
 impl Guide {
-    /// The four numbers after the move, and their density.
+    /// The four numbers after the move, and the density of the last two.
     pub(super) fn move_numbers(&self, [u0, u1, u2, u3]: [f64; 4]) -> ([f64; 4], f64) {
-        let ([x, y], aim) = self.aim.move_point([u0, u1]);
+        let ([x, y], _) = self.aim.move_point([u0, u1]);
         let ([z, w], place) = self.place.move_point([u2, u3]);
-        ([x, y, z, w], aim * place)
+        ([x, y, z, w], place)
     }
 }
 
 impl GuideTable {
+    /// The density at a point after the move.
+    pub(super) fn density_at(&self, [x, y]: [f64; 2]) -> f64 {
+        let share = |ends: &[f64], u: f64| {
+            let cells = ends.len() - 1;
+            let cell = ((u * cells as f64) as usize).min(cells - 1);
+            (cell, (ends[cell + 1] - ends[cell]) * cells as f64)
+        };
+        let (column, across) = share(&self.columns, x);
+        across * share(&self.rows[column], y).1
+    }
+
     fn move_point(&self, [x, y]: [f64; 2]) -> ([f64; 2], f64) {
         let column = cell_of(&self.columns, x);
         let (x, across) = stretch(&self.columns, column, x);
@@ -59,6 +70,8 @@ mod tests {
         let (point, density) = table.move_point([0.125, 0.45]);
         assert_eq!(point, [0.25, 0.25]);
         assert!((density - 0.25 * 0.9 * 4.0).abs() < 1e-15);
+        assert_eq!(table.density_at(point), density);
+        assert!((table.density_at([0.7, 0.6]) - 0.75 * 0.5 * 4.0).abs() < 1e-15);
         let steps = 200;
         let grid = (0..steps * steps).map(|k| [k / steps, k % steps].map(|i| (f64::from(i) + 0.5) / f64::from(steps)));
         // The mean of 1/density over what is drawn is the area, and of x/density the mean of x.
