@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Error over time of diacaustic and of other renderers, on the same scenes, in one run.
 
-    benches/race/race.py [--scenes teapot,crystal,ball] [--renderers diacaustic,pov-ray,mitsuba] [--folder target/race] [--plot FILE.png] [--quick]
+    benches/race/race.py [--scenes teapot,crystal,ball,rough,large-lamp,sun,sky] [--renderers diacaustic,pov-ray,mitsuba] [--folder target/race] [--plot FILE.png] [--quick]
 
 Needs target/release/diacaustic (cargo build --release) and `pip install numpy OpenEXR matplotlib`; takes part whatever else is there of POV-Ray
 (`apt-get install povray`) and Mitsuba (`pip install mitsuba`), and says what is not. References are long renders of diacaustic, made once and kept in the folder; where
@@ -63,7 +63,7 @@ def check_against_shared(folder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", default="teapot,crystal,ball")
+    parser.add_argument("--scenes", default="teapot,crystal,ball,rough,large-lamp,sun,sky")
     parser.add_argument("--renderers", default="diacaustic,pov-ray,mitsuba")
     parser.add_argument("--folder", type=pathlib.Path, default=REPOSITORY / "target" / "race")
     parser.add_argument("--plot", type=pathlib.Path)
