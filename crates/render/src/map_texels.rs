@@ -1,7 +1,7 @@
 //! The texels of all maps and how their tiles join, as the kernels read it.
 
 use diacaustic_shaders::{MapTexel, MapTileRecord, MapWeld, MapWeldPart, NONE};
-use diacaustic_surface::{TexelChart, WeldPart};
+use diacaustic_surface::{TexelChart, Weld, WeldPart};
 
 use crate::{
     Error,
@@ -12,6 +12,9 @@ use crate::{
 const TEXELS: Purpose = Purpose { what: "the list of the maps' texels", remedy: "lower map_size" };
 const TILES: Purpose = Purpose { what: "the list of the maps' tiles", remedy: "lower map_budget" };
 const WELDS: Purpose = Purpose { what: "the list of places where tiles meet", remedy: "lower map_budget" };
+
+/// A weight of 1, but for rounding.
+const WHOLE: f64 = 0.999;
 
 /// What the passes from sums to irradiance read.
 #[derive(Debug)]
@@ -95,6 +98,11 @@ impl Lists {
         for (texel, links) in &map.welds.linked {
             let record = &mut self.texels[(first_texel + texel) as usize];
             record.link = self.parts.len() as u32 + 1;
+            if let [weld] = links.as_slice()
+                && joins_charts(map, &map.welds.welds[weld.index as usize])
+            {
+                record.chart = NONE;
+            }
             record.area = match links.as_slice() {
                 [weld] => map.welds.welds[weld.index as usize].area as f32,
                 // On a border it stands for half a cell, as its like on the other side would.
@@ -104,6 +112,13 @@ impl Lists {
             self.parts.extend(links.iter().map(|link| part(link, first_weld)));
         }
     }
+}
+
+/// Whether texels of several charts are wholly one in a weld: what goes into it by a part is stitched, and goes on smoothly.
+fn joins_charts(map: &MapPlacement, weld: &Weld) -> bool {
+    let chart = |texel: u64| map.surfaces[texel as usize].chart;
+    let is_whole = |source: &&WeldPart| source.weight >= WHOLE;
+    weld.sources.iter().filter(is_whole).any(|source| chart(source.index) != chart(weld.owner))
 }
 
 fn part(part: &WeldPart, first: u64) -> MapWeldPart {
