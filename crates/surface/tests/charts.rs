@@ -1,5 +1,6 @@
 //! Charts: what they promise, on many shapes.
 
+mod any_mesh;
 mod even_light;
 mod shapes;
 
@@ -262,7 +263,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_mesh_has_charts(mesh in shapes::any_mesh(), map_size in 2u32..200) {
+    fn any_mesh_has_charts(mesh in any_mesh::any_mesh(), map_size in 2u32..200) {
         let object = shapes::object(mesh);
         let layout = MapLayout::new(&object, map_size);
         let triangles = world_triangles(&object);
@@ -280,7 +281,7 @@ proptest! {
     }
 
     #[test]
-    fn charts_of_any_mesh_do_not_overlap(mesh in shapes::any_mesh()) {
+    fn charts_of_any_mesh_do_not_overlap(mesh in any_mesh::any_mesh()) {
         let object = shapes::object(mesh);
         let layout = MapLayout::new(&object, 400);
         if layout.cell_count == 0 && layout.width.max(layout.height) <= 400 {

@@ -1,7 +1,6 @@
 //! Meshes for charts to be grown on.
 #![allow(dead_code, unused_imports, reason = "each user takes some of them")]
 
-mod any_mesh;
 mod random_mesh;
 
 use std::{f64::consts::TAU, path::Path, sync::Arc};
@@ -9,7 +8,7 @@ use std::{f64::consts::TAU, path::Path, sync::Arc};
 use diacaustic_scene::{Mesh, MeshOptions, Object, load_obj};
 use glam::{Affine3A, DVec2, DVec3, Vec3};
 
-pub use self::{any_mesh::any_mesh, random_mesh::random_mesh};
+pub use self::random_mesh::random_mesh;
 
 /// An object of a mesh, where the mesh is.
 pub fn object(mesh: Mesh) -> Object {
