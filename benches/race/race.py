@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Error over time of diacaustic and of other renderers, on the same scenes, in one run.
 
-    benches/race/race.py [--scenes teapot,crystal,ball,rough,large-lamp,sun,sky] [--renderers diacaustic,pov-ray,mitsuba] [--folder target/race] [--plot FILE.png] [--quick]
+    benches/race/race.py [--scenes teapot,crystal,ball,rough,large-lamp,sun,sky] [--renderers diacaustic,pov-ray,mitsuba] [--targets 0.6,0.3] [--folder target/race] [--plot FILE.png]
+                        [--quick]
 
 Needs target/release/diacaustic (cargo build --release) and `pip install numpy OpenEXR matplotlib`; takes part whatever else is there of POV-Ray
 (`apt-get install povray`) and Mitsuba (`pip install mitsuba`), and says what is not. References are long renders of diacaustic, made once and kept in the folder; where
@@ -9,6 +10,7 @@ Needs target/release/diacaustic (cargo build --release) and `pip install numpy O
 processor seconds of whole processes, with every cache of kernels warm, and the relative squared errors of the caustic's and the floor's pixels.
 """
 import argparse
+import functools
 import pathlib
 import sys
 
@@ -22,14 +24,14 @@ PROGRAM = REPOSITORY / "target" / "release" / "diacaustic"
 SHARED = REPOSITORY.parent / "shared" / "reference"
 # Samples and photons of a reference, and what makes its layers.
 LONG = ["--samples", "128", "--photons", "20000000", "--set", "render.footprints=false", "--set", "output.layers=true"]
-TARGETS = [0.6, 0.3, 0.2, 0.1, 0.05]
+TARGETS = "0.6,0.3,0.2,0.1,0.05"
 
 
-def diacaustic(scene, folder, quick):
+def diacaustic(targets, scene, folder, quick):
     """Renders that choose their photons and samples, for one target error after the other."""
     picture = folder / "diacaustic.exr"
-    for target in TARGETS[:3] if quick else TARGETS:
-        command = [PROGRAM, scene, "--target-error", str(target), "--set", "render.footprints=true", "--quiet", "--output", picture]
+    for target in targets[:3] if quick else targets:
+        command = [PROGRAM, scene, "--target-error", target, "--set", "render.footprints=true", "--quiet", "--output", picture]
         yield f"target error {target}", timed(command), read_rgb(picture)
 
 
@@ -45,12 +47,12 @@ def references(names, folder, quick):
         yield name, Reference.of_layers(picture)
 
 
-def check_against_shared(folder):
-    """The long render's settings on the shared scenes, against their pictures."""
+def check_against_shared(scenes, folder):
+    """The long render's settings on the shared scenes, as far as they are raced, against their pictures."""
     if not SHARED.is_dir():
         print(f"{SHARED} is not there: the references are not checked against it", file=sys.stderr)
         return
-    for name in ("teapot", "ball"):
+    for name in {"teapot", "ball"}.intersection(scenes):
         picture = folder / f"shared-{name}.exr"
         if not picture.exists():
             text = (REPOSITORY / "tests" / "scenes" / f"reference-{name}.toml").read_text()
@@ -65,17 +67,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", default="teapot,crystal,ball,rough,large-lamp,sun,sky")
     parser.add_argument("--renderers", default="diacaustic,pov-ray,mitsuba")
+    parser.add_argument("--targets", default=TARGETS, help="target errors of diacaustic")
     parser.add_argument("--folder", type=pathlib.Path, default=REPOSITORY / "target" / "race")
     parser.add_argument("--plot", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true", help="short ladders and poor references, to try the script")
     arguments = parser.parse_args()
     arguments.folder.mkdir(parents=True, exist_ok=True)
-    racers = {"diacaustic": diacaustic, **others.available()}
+    racers = {"diacaustic": functools.partial(diacaustic, arguments.targets.split(",")), **others.available()}
     chosen = [name for name in arguments.renderers.split(",") if name in racers]
     for name in set(arguments.renderers.split(",")) - set(chosen):
         print(f"{name} is not installed and does not take part", file=sys.stderr)
     if not arguments.quick:
-        check_against_shared(arguments.folder)
+        check_against_shared(arguments.scenes.split(","), arguments.folder)
     rows = []
     print("| scene | renderer | setting | wall s | processor s | caustic | floor | caustic's energy |\n|---|---|---|---:|---:|---:|---:|---:|")
     for scene, reference in references(arguments.scenes.split(","), arguments.folder, arguments.quick):
