@@ -4,6 +4,7 @@
 //! A part of the crate `diacaustic`, which changes it as it needs; use that.
 
 mod bounds;
+mod box_tree;
 mod bvh;
 mod chart;
 mod error;

@@ -3,21 +3,17 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Nodes of a level, or triangles, in a node of the next.
-const CHILDREN: usize = 8;
+use crate::box_tree::{BoxTree, around};
+
 /// Boxes of triangles over a place, in the mean, from which on it takes too long to compare triangles with all that are near: in fans of
 /// slivers.
 pub(super) const MANY_BOXES: f64 = 64.0;
 
 /// Triangles of a plane, found by place.
-///
-/// A tree of boxes over the triangles along a Z-order curve, which takes the same time to build for slivers, fans and heaps as for others.
 pub(super) struct FlatTriangles {
     pub corners: Vec<[DVec2; 3]>,
-    /// The triangles' numbers along the curve.
-    order: Vec<u32>,
-    /// The boxes of the triangles along the curve, then of each [`CHILDREN`] of these, and so on.
-    levels: Vec<Vec<Box2>>,
+    /// The boxes around them.
+    tree: BoxTree<DVec2>,
 }
 
 /// Lower and upper corner.
@@ -25,20 +21,12 @@ type Box2 = (DVec2, DVec2);
 
 impl FlatTriangles {
     pub(super) fn new(corners: Vec<[DVec2; 3]>) -> Self {
-        let (low, high) = union(&corners.iter().map(bounds).collect::<Vec<_>>());
+        let (low, high) = around(corners.iter().map(bounds));
         let scale = f64::from(u32::MAX) / (high - low).max_element().max(f64::MIN_POSITIVE);
         let place = |[a, b, c]: &[DVec2; 3]| z_order(((*a + *b + *c) / 3.0 - low) * scale);
-        let mut keyed: Vec<(u64, u32)> = corners.par_iter().map(place).zip(0..corners.len() as u32).collect();
-        keyed.par_sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|(_, number)| number).collect();
-        let mut level: Vec<Box2> = order.iter().map(|&number| bounds(&corners[number as usize])).collect();
-        let mut levels = Vec::new();
-        while level.len() > 1 {
-            let above = level.chunks(CHILDREN).map(union).collect();
-            levels.push(std::mem::replace(&mut level, above));
-        }
-        levels.push(level);
-        Self { corners, order, levels }
+        let places: Vec<u64> = corners.par_iter().map(place).collect();
+        let tree = BoxTree::new(&places, |number| bounds(&corners[number]));
+        Self { corners, tree }
     }
 
     /// Whether `found` holds for some triangle whose box meets that of a given one, other than itself.
@@ -47,22 +35,8 @@ impl FlatTriangles {
     }
 
     /// Whether `found` holds for some triangle whose box meets a given one.
-    pub(super) fn any_in(&self, (low, high): Box2, mut found: impl FnMut(usize) -> bool) -> bool {
-        let top = self.levels.len() - 1;
-        let mut open: Vec<(usize, usize)> = (0..self.levels[top].len()).map(|node| (top, node)).collect();
-        while let Some((level, node)) = open.pop() {
-            let (own_low, own_high) = self.levels[level][node];
-            if own_low.cmpgt(high).any() || own_high.cmplt(low).any() {
-                continue;
-            }
-            if level > 0 {
-                let children = CHILDREN * node..(CHILDREN * (node + 1)).min(self.levels[level - 1].len());
-                open.extend(children.map(|child| (level - 1, child)));
-            } else if found(self.order[node] as usize) {
-                return true;
-            }
-        }
-        false
+    pub(super) fn any_in(&self, near: Box2, found: impl FnMut(usize) -> bool) -> bool {
+        self.tree.any_near(near, found)
     }
 }
 
@@ -82,11 +56,6 @@ pub(super) fn shares_of_box(triangles: &[[DVec2; 3]]) -> (f64, f64) {
 
 fn bounds([a, b, c]: &[DVec2; 3]) -> Box2 {
     (a.min(*b).min(*c), a.max(*b).max(*c))
-}
-
-fn union(boxes: &[Box2]) -> Box2 {
-    let around = |(low, high): Box2, own: &Box2| (low.min(own.0), high.max(own.1));
-    boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), around)
 }
 
 /// The place along a Z-order curve of a point with coordinates from 0 to 2³².

@@ -2,72 +2,26 @@
 
 use glam::DVec3;
 
-/// Nodes of a level, or boxes, in a node of the next.
-const CHILDREN: usize = 8;
-
-/// Boxes, found by others that meet them: a tree over the boxes along a Z-order curve.
-pub(super) struct BoxTree {
-    /// The boxes' numbers along the curve.
-    order: Vec<u32>,
-    /// The boxes along the curve, then those around each [`CHILDREN`] of these, and so on; the last has one.
-    levels: Vec<Vec<Box3>>,
-}
+use crate::box_tree::{BoxTree, around};
 
 /// Lower and upper corner.
 pub(super) type Box3 = (DVec3, DVec3);
 
-impl BoxTree {
-    pub(super) fn new(boxes: &[Box3]) -> Self {
-        let (low, high) = around(boxes);
-        let scale = f64::from((1 << 21) - 1) / (high - low).max_element().max(f64::MIN_POSITIVE);
-        let place = |number: u32| {
-            let (own_low, own_high) = boxes[number as usize];
-            z_order((0.5 * (own_low + own_high) - low) * scale)
-        };
-        let mut keyed: Vec<(u64, u32)> = (0..boxes.len() as u32).map(|number| (place(number), number)).collect();
-        keyed.sort_unstable();
-        let order: Vec<u32> = keyed.into_iter().map(|(_, number)| number).collect();
-        let mut level: Vec<Box3> = order.iter().map(|&number| boxes[number as usize]).collect();
-        let mut levels = Vec::new();
-        while level.len() > 1 {
-            let above = level.chunks(CHILDREN).map(around).collect();
-            levels.push(std::mem::replace(&mut level, above));
-        }
-        levels.push(level);
-        Self { order, levels }
-    }
-
-    /// Whether `found` holds for some box that meets a given one.
-    pub(super) fn any_near(&self, (low, high): Box3, mut found: impl FnMut(usize) -> bool) -> bool {
-        let top = self.levels.len() - 1;
-        let mut open: Vec<(usize, usize)> = (0..self.levels[top].len()).map(|node| (top, node)).collect();
-        while let Some((level, node)) = open.pop() {
-            let (own_low, own_high) = self.levels[level][node];
-            if own_low.cmpgt(high).any() || own_high.cmplt(low).any() {
-                continue;
-            }
-            if level > 0 {
-                let children = CHILDREN * node..(CHILDREN * (node + 1)).min(self.levels[level - 1].len());
-                open.extend(children.map(|child| (level - 1, child)));
-            } else if found(self.order[node] as usize) {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Calls `found` with each box that meets a given one.
-    pub(super) fn each_near(&self, near: Box3, mut found: impl FnMut(usize)) {
-        self.any_near(near, |number| {
-            found(number);
-            false
-        });
-    }
+/// The tree of boxes of space, along a Z-order curve.
+pub(super) fn box_tree(boxes: &[Box3]) -> BoxTree<DVec3> {
+    let (low, high) = around(boxes.iter().copied());
+    let scale = f64::from((1 << 21) - 1) / (high - low).max_element().max(f64::MIN_POSITIVE);
+    let place = |(own_low, own_high): &Box3| z_order((0.5 * (*own_low + *own_high) - low) * scale);
+    let places: Vec<u64> = boxes.iter().map(place).collect();
+    BoxTree::new(&places, |number| boxes[number])
 }
 
-fn around(boxes: &[Box3]) -> Box3 {
-    let add = |(low, high): Box3, own: &Box3| (low.min(own.0), high.max(own.1));
-    boxes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), add)
+/// Calls `found` with each box of a tree that meets a given one.
+pub(super) fn each_near(tree: &BoxTree<DVec3>, near: Box3, mut found: impl FnMut(usize)) {
+    tree.any_near(near, |number| {
+        found(number);
+        false
+    });
 }
 
 /// The box around a triangle.
@@ -137,7 +91,7 @@ mod tests {
             let boxes: Vec<Box3> = points.iter().map(|&(at, reach)| (at - reach, at + 2.0 * reach)).collect();
             let given = (one.min(other), one.max(other));
             let mut found = Vec::new();
-            BoxTree::new(&boxes).each_near(given, |number| found.push(number));
+            each_near(&box_tree(&boxes), given, |number| found.push(number));
             found.sort_unstable();
             let meets = |&number: &usize| {
                 let (low, high) = boxes[number];

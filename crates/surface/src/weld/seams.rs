@@ -7,10 +7,10 @@ use rayon::prelude::*;
 
 use super::{
     Map, WeldPart,
-    near::{Box3, BoxTree, bounds, nearest},
+    near::{Box3, bounds, box_tree, each_near, nearest},
     nodes::place,
 };
-use crate::{MapTile, TexelChart, WorldTriangle};
+use crate::{MapTile, TexelChart, WorldTriangle, box_tree::BoxTree};
 
 /// How far from the surface of a texel that of another chart counts as beside it, in the texel's width on a chart that is not tilted.
 const REACH: f64 = 1.0;
@@ -55,24 +55,24 @@ struct Stand {
 struct NearTriangles {
     /// Their places in the map's list.
     numbers: Vec<u32>,
-    tree: BoxTree,
+    tree: BoxTree<DVec3>,
 }
 
 impl NearTriangles {
     /// The triangles whose corners, if they have any here, are near one of some boxes.
     fn new(map: &Map<'_>, boxes: &[Box3], corners: impl Fn(&WorldTriangle) -> Option<[DVec3; 3]> + Sync) -> Self {
-        let wanted = BoxTree::new(boxes);
+        let wanted = box_tree(boxes);
         let own = |(number, triangle): (usize, &WorldTriangle)| {
             let own = bounds(corners(triangle)?);
             wanted.any_near(own, |_| true).then_some((number as u32, own))
         };
         let (numbers, boxes): (Vec<u32>, Vec<Box3>) = map.triangles.par_iter().enumerate().filter_map(own).unzip();
-        Self { numbers, tree: BoxTree::new(&boxes) }
+        Self { numbers, tree: box_tree(&boxes) }
     }
 
     /// Calls `found` with each that may be near a box, and its place in the map's list.
     fn each<'m>(&self, map: &Map<'m>, near: Box3, mut found: impl FnMut(usize, &'m WorldTriangle)) {
-        self.tree.each_near(near, |k| found(self.numbers[k] as usize, &map.triangles[self.numbers[k] as usize]));
+        each_near(&self.tree, near, |k| found(self.numbers[k] as usize, &map.triangles[self.numbers[k] as usize]));
     }
 }
 
